@@ -19,31 +19,19 @@ def test_published_sets(data_dir, name, stones, count):
     assert len(set(cluster_stones(found, PoseBook()).values())) == count
 
 
-def rectangles(*sizes):
-    return StoneSet(tuple(Stone(k, np.ones(size, bool)) for k, size in enumerate(sizes, 5)))
-
-
 def test_similar_stones_share_a_cluster_and_larger_ones_come_first():
-    stones = rectangles((4, 4), (20, 40), (4, 12), (20, 41), (4, 13), (5, 5))
-    found = cluster_stones(stones, PoseBook())
-    assert found[6] == found[8] == 1
-    assert found[7] == found[9]
-    assert found[5] == found[10]
-    assert set(found.values()) == {1, 2, 3}
-    assert set(found) == {5, 6, 7, 8, 9, 10}
+    def found(*sizes, **settings):
+        stones = StoneSet(tuple(Stone(k, np.ones(size, bool)) for k, size in enumerate(sizes, 5)))
+        return cluster_stones(stones, PoseBook(), ClusterSettings(**settings))
 
-
-def test_size_does_not_depend_on_how_the_stone_lies():
-    assert cluster_stones(rectangles((6, 20), (20, 6)), PoseBook()) == {5: 1, 6: 1}
-    assert cluster_stones(rectangles((3, 3)), PoseBook()) == {5: 1}
-    assert cluster_stones(rectangles(), PoseBook()) == {}
-
-
-def test_distance_decides():
-    stones = rectangles((4, 4), (20, 20), (4, 12), (20, 21))
-    assert set(cluster_stones(stones, PoseBook(), ClusterSettings(distance=99)).values()) == {1}
-    assert (
-        len(set(cluster_stones(stones, PoseBook(), ClusterSettings(distance=1e-9)).values())) == 4
+    assert found((4, 4), (20, 40), (4, 12), (20, 41), (4, 13), (5, 5)) == dict(
+        zip(range(5, 11), (3, 1, 2, 1, 2, 3), strict=True)
     )
+    # The size of a stone does not depend on how it lies.
+    assert found((6, 20), (20, 6)) == {5: 1, 6: 1}
+    assert (found((3, 3)), found()) == ({5: 1}, {})
+    apart = (4, 4), (20, 20), (4, 12), (20, 21)
+    for distance, count in ((99, 1), (1e-9, 4)):
+        assert len(set(found(*apart, distance=distance).values())) == count
     with pytest.raises(ValueError, match="distance must be above 0"):
         ClusterSettings(distance=0)

@@ -32,16 +32,13 @@ from drystone.planner.settings import METHODS
 from drystone.selection.policies.registry import BUILT_IN, PAPER
 
 ROOT = Path(__file__).resolve().parents[1]
-SETTINGS = ROOT / "docs" / "settings.md"
-ERRORS = ROOT / "docs" / "errors.md"
-COMMANDS = ROOT / "docs" / "commands.md"
 MENU = sorted((ROOT / "docs").glob("*.md"))
 PAGES = [*sorted(ROOT.glob("*.md")), *MENU, *sorted((ROOT / "docs" / "evidence").glob("*.md"))]
 NAMES = [str(page.relative_to(ROOT)) for page in PAGES]
 
 BLOCK = re.compile(r"^```(\w+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 LINK = re.compile(r"\]\(([^)#\s]+)(#[^)\s]*)?\)")
-CODE_FILE = re.compile(r"`([\w/]+/\w+\.(?:py|pyx|pxd))`")
+CODE_FILE = re.compile(r"`([\w/]+\.(?:py|pyx|pxd))`")
 TOCTREE = re.compile(r"^```\{toctree\}\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 CODE_ROW = re.compile(r"^\| ([EW]\d{3}) \| (.*?) \|", re.MULTILINE)
 TABLE = re.compile(r"<!-- table (\w+) -->\n(.*?)<!-- end -->", re.DOTALL)
@@ -54,13 +51,6 @@ SOURCES = {
     "rubble": generate.RubbleSettings,
 }
 """Settings outside the planner, by the name of their table."""
-
-
-def value(thing):
-    """Write a value as in TOML; None, which TOML lacks, as none."""
-    if thing is None:
-        return "none"
-    return f"`{json.dumps(thing)}`"
 
 
 def written_table(name):
@@ -79,7 +69,10 @@ def written_table(name):
         ranges = dict.fromkeys(range_text(ends[one]) for one in names if ends[one])
         said = " ".join([text, *(f"{one[0].upper()}{one[1:]}." for one in ranges)])
         values = [
-            ", ".join(value(getattr(settings, field)) for field in names)
+            # TOML lacks None.
+            ", ".join(
+                f"`{json.dumps(getattr(settings, n))}`".replace("`null`", "none") for n in names
+            )
             for settings in columns.values()
         ]
         lines.append(f"| {' | '.join([', '.join(f'`{n}`' for n in names), *values, said])} |")
@@ -96,7 +89,7 @@ def with_meanings(text):
     return CODE_ROW.sub(lambda m: f"| {m[1]} | {CODES.get(m[1], m[2])} |", text)
 
 
-def written_commands():
+def written_commands(_):
     """Return docs/commands.md as the parser has it; options that commands share stand once."""
     parsers = build_parser()._subparsers._group_actions[0].choices
     assert isinstance(parsers, dict)
@@ -148,44 +141,38 @@ def blocks(page, language):
 
 
 def command_lines(page):
-    """Yield the words of every drystone command in the shell blocks of a page.
+    """Return the words of every drystone command in the shell blocks of a page.
 
     Of the README those in the text count too, when they have arguments.
     """
-    for block in blocks(page, "sh"):
-        for line in block.replace("\\\n", " ").splitlines():
-            words = shlex.split(line, comments=True)
-            if words and Path(words[0]).name == "drystone":
-                yield words[1:]
+    lines = "\n".join(blocks(page, "sh")).replace("\\\n", " ").splitlines()
+    words = [shlex.split(line, comments=True) for line in lines]
     if page.name == "README.md":  # elsewhere in text they have placeholders
-        for line in re.findall(r"`drystone ([^`]+ [^`]+ [^`]+)`", page.read_text(encoding="utf-8")):
-            yield shlex.split(line)
+        text = page.read_text(encoding="utf-8")
+        words += map(shlex.split, re.findall(r"`(drystone [^`]+ [^`]+ [^`]+)`", text))
+    return [line[1:] for line in words if line and Path(line[0]).name == "drystone"]
 
 
-def test_the_settings_are_those_of_the_code():
-    text = SETTINGS.read_text(encoding="utf-8")
-    names = [name for name, _ in TABLE.findall(text)]
-    assert names == [*planner_tables(), *SOURCES]
-    assert text == rewritten(text), "run python -m tests.test_documents"
+WRITTEN = {"settings.md": rewritten, "errors.md": with_meanings, "commands.md": written_commands}
+"""Pages of docs and what makes them anew."""
 
 
-def test_the_codes_mean_what_the_code_says():
-    text = ERRORS.read_text(encoding="utf-8")
-    assert text == with_meanings(text), "run python -m tests.test_documents"
+@pytest.mark.parametrize("page", WRITTEN)
+def test_what_is_written_anew_is_that_of_the_code(page):
+    text = (ROOT / "docs" / page).read_text(encoding="utf-8")
+    assert text == WRITTEN[page](text), "run python -m tests.test_documents"
+
+
+def test_every_setting_and_code_is_explained():
+    text = (ROOT / "docs" / "settings.md").read_text(encoding="utf-8")
+    described = planner_tables() | SOURCES
+    assert [name for name, _ in TABLE.findall(text)] == list(described)
+    for kind in described.values():
+        explained = entries(kind)
+        assert list(explained) == [field.name for field in dataclasses.fields(kind)]
+        assert all(explained[name][1] for name in plain_fields(kind))
     assert list(CODES) == sorted(CODES)
     assert all(said[-1] == "." and len(said.split()) < 26 for said in CODES.values())
-
-
-def test_the_commands_are_those_of_the_parser():
-    text = COMMANDS.read_text(encoding="utf-8")
-    assert text == written_commands(), "run python -m tests.test_documents"
-
-
-@pytest.mark.parametrize("described", [*planner_tables().values(), *SOURCES.values()])
-def test_every_setting_is_explained(described):
-    explained = entries(described)
-    assert list(explained) == [field.name for field in dataclasses.fields(described)]
-    assert all(explained[name][1] for name in plain_fields(described))
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -201,15 +188,15 @@ def test_every_command_line_is_understood(name):
 
 def test_files_of_code_that_documents_name_are_there():
     named = {
-        (page.name, path)
+        path
         for page in PAGES
         for path in CODE_FILE.findall(page.read_text(encoding="utf-8"))
-        if "NAME" not in path
+        # A page with instructions names files by themselves.
+        if "NAME" not in path and ("/" in path or page.name == "theory.md")
     }
     homes = [ROOT / name for name in ("", "src", "src/drystone", "src/drystone_lab")]
-    lost = {one for one in named if not any((home / one[1]).is_file() for home in homes)}
     assert len(named) > 20
-    assert lost == set()
+    assert [one for one in named if not any((home / one).is_file() for home in homes)] == []
 
 
 @pytest.mark.parametrize("name", ["README.md", *(n for n in NAMES if n.startswith("docs/for-"))])
@@ -258,27 +245,21 @@ def test_every_page_is_in_the_menu_or_among_the_evidence():
         assert not missing, "for those who read it on the code host"
 
 
-@pytest.mark.parametrize("page", [page.name for page in MENU])
+@pytest.mark.parametrize("page", MENU, ids=[page.name for page in MENU])
 def test_every_page_says_in_its_first_line_what_it_is_for(page):
-    title, first = (ROOT / "docs" / page).read_text(encoding="utf-8").split("\n\n")[:2]
+    title, first = page.read_text(encoding="utf-8").split("\n\n")[:2]
     assert re.fullmatch("# .+", title)
-    sentence = re.split(r"[.:?](?:\s|$)", first)[0]
-    assert 5 <= len(sentence.split()) <= 30
-    assert page not in {"search.md", "genindex.md", "modindex.md"}, "Sphinx keeps these names"
+    assert 5 <= len(re.split(r"[.:?](?:\s|$)", first)[0].split()) <= 30
+    assert page.stem not in {"search", "genindex", "modindex"}, "Sphinx keeps these names"
 
 
-def test_the_reference_names_everything_that_is_public():
+def test_the_reference_names_all_that_is_public_and_the_theory_has_every_equation():
     text = (ROOT / "docs" / "api.md").read_text(encoding="utf-8")
     described = re.findall(r"^\.\. auto\w+:: drystone\.(\w+)$", text, re.MULTILINE)
     assert sorted(described) == sorted(drystone.__all__)
-
-
-def test_the_theory_has_every_equation_and_files_that_exist():
     text = (ROOT / "docs" / "theory.md").read_text(encoding="utf-8")
     numbers = re.findall(r"\((\d+)[a-d]?(?:-[a-d])?(?:, (\d+))?\)", text)
     assert {int(n) for pair in numbers for n in pair if n} >= set(range(1, 31))
-    files = re.findall(r"`([\w/]+\.py)`", text)
-    assert [one for one in files if not (ROOT / "src" / "drystone" / one).exists()] == []
 
 
 def test_what_has_a_name_has_its_place_in_the_pages():
@@ -293,12 +274,11 @@ def test_what_has_a_name_has_its_place_in_the_pages():
 
 
 def test_the_gallery_has_titles_and_is_short():
-    scripts = sorted((ROOT / "docs" / "gallery").glob("plot_*.py"))
+    scripts = {path.name: path.read_text() for path in ROOT.glob("docs/gallery/plot_*.py")}
     assert len(scripts) >= 4
-    for script in scripts:
-        text = script.read_text(encoding="utf-8")
-        assert re.match(r'"""\n(.+)\n=+\n\n', text), script.name
-        assert len(text.splitlines()) < 80, script.name
+    for name, text in scripts.items():
+        assert re.match(r'"""\n(.+)\n=+\n\n', text), name
+        assert len(text.splitlines()) < 80, name
 
 
 def test_pictures_are_light_and_shown():
@@ -316,28 +296,18 @@ def test_pictures_are_light_and_shown():
             assert image.width >= (600 if picture.suffix == ".gif" else 800)
 
 
-def test_the_plan_of_the_documents_is_valid():
-    (example,) = blocks(ROOT / "docs" / "plan-format.md", "json")
+def test_every_property_of_a_plan_is_described_and_the_example_is_valid():
+    page, names = ROOT / "docs" / "plan-format.md", set()
+    text, schema = page.read_text(encoding="utf-8"), json.dumps(plan_schema())
+    json.loads(schema, object_hook=lambda part: names.update(part.get("properties", ())) or part)
+    assert "steps" in names
+    assert {name for name in names if f"`{name}`" not in text} == set()
+    (example,) = blocks(page, "json")
     plan = plan_from_json(json.loads(example))
     assert [step.kind for step in plan.steps] == ["stone", "stone", "wedge"]
 
 
-def test_every_property_of_a_plan_is_described():
-    text = (ROOT / "docs" / "plan-format.md").read_text(encoding="utf-8")
-    missing = {name for name in _properties(plan_schema()) if f"`{name}`" not in text}
-    assert not missing
-
-
-def _properties(schema):
-    """Return the names of all properties in a JSON Schema."""
-    if isinstance(schema, dict):
-        own = schema.get("properties", {})
-        found = set(own) if isinstance(own, dict) else set()
-        return found.union(*(_properties(item) for item in schema.values()))
-    return set().union(*map(_properties, schema)) if isinstance(schema, list) else set()
-
-
 if __name__ == "__main__":
-    for page, anew in ((SETTINGS, rewritten), (ERRORS, with_meanings)):
+    for name, anew in WRITTEN.items():
+        page = ROOT / "docs" / name
         page.write_text(anew(page.read_text(encoding="utf-8")), encoding="utf-8")
-    COMMANDS.write_text(written_commands(), encoding="utf-8")

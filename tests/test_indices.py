@@ -40,57 +40,41 @@ def test_an_upright_rectangle_has_one_and_a_turned_square_one_half():
     assert shape_factor(PoseBook(0.3).pose(square, 45.0)) == pytest.approx(0.5)
 
 
-@repeatable()
-@given(scene=posed_on_walls())
-def test_lfr_is_that_of_rays(scene):
+@repeatable(80)
+@given(
+    scene=posed_on_walls(),
+    others=st.lists(st.integers(1, 20).map(float), max_size=3),
+    end=st.integers(0, 6),
+)
+def test_every_index_is_that_of_its_slow_twin(scene, others, end):
+    """LFR is that of rays, GDS of the painted box, NHR, IWR and IS of the label image."""
     wall, posed, row, col = scene
-    got = local_filling_ratio_at(Landscape.of(wall), posed, row, col)
-    assert got == pytest.approx(naive_rays.local_filling_ratio(wall.occupied, posed.mask, row, col))
-
-
-@repeatable()
-@given(scene=posed_on_walls())
-def test_gds_is_that_of_the_painted_box(scene):
-    wall, posed, row, col = scene
-    stone = naive.painted(wall.occupied.shape, posed.mask, row, col)
-    landscape = Landscape.of(wall)
-    got = geometrical_dice_score_at(landscape, posed, row)
-    assert got == pytest.approx(naive.dice_score(wall.occupied, stone))
+    landscape, occupied, labels = Landscape.of(wall), wall.occupied, wall.labels
+    box = view_box(posed, row, col, landscape.height_px)
+    stone = naive.painted(occupied.shape, posed.mask, row, col)
+    filling = local_filling_ratio_at(landscape, posed, row, col)
+    assert filling == pytest.approx(naive_rays.local_filling_ratio(occupied, posed.mask, row, col))
+    score = geometrical_dice_score_at(landscape, posed, row)
+    assert score == pytest.approx(naive.dice_score(occupied, stone))
     # The rule of placement counts with the same number, to the last bit.
     top = wall.site.height_px - wall.height_px
     inside = posed.mask[max(0, top - row) :].sum(dtype=np.int32)
     box_area = float(wall.site.width_px * wall.height_px)
-    assert dice_score(np.array([inside], np.int32), posed.area_px, box_area).tolist() == [got]
-
-
-@repeatable(80)
-@given(scene=posed_on_walls(), others=st.lists(st.integers(1, 20).map(float), max_size=3))
-def test_nhr_is_that_of_the_label_image(scene, others):
-    wall, posed, row, col = scene
-    landscape = Landscape.of(wall)
-    box = view_box(posed, row, col, landscape.height_px)
-    neighbour = left_neighbour(landscape, box)
-    stone = naive.painted(wall.occupied.shape, posed.mask, row, col)
-    expected = naive.left_neighbour(wall.labels, stone)
-    if expected is None:
-        assert neighbour is None
-    else:
-        extent = naive.extent_of(wall.labels == expected)
-        assert neighbour == Box(extent.x0, extent.x1, extent.y0, extent.y1)
-    assert neighbour_height_ratio(
-        box, neighbour, fmean(others) if others else None
-    ) == pytest.approx(naive.neighbour_height_ratio(wall.labels, stone, others))
-
-
-@repeatable(80)
-@given(scene=posed_on_walls(), end=st.integers(0, 6))
-def test_iwr_is_that_of_the_label_image(scene, end):
-    wall, posed, row, col = scene
-    landscape = Landscape.of(wall)
-    box = view_box(posed, row, col, landscape.height_px)
-    stone = naive.painted(wall.occupied.shape, posed.mask, row, col)
+    assert dice_score(np.array([inside], np.int32), posed.area_px, box_area).tolist() == [score]
+    neighbour, expected = left_neighbour(landscape, box), naive.left_neighbour(labels, stone)
+    if expected is not None:
+        extent = naive.extent_of(labels == expected)
+        expected = Box(extent.x0, extent.x1, extent.y0, extent.y1)
+    assert neighbour == expected
+    mean = fmean(others) if others else None
+    assert neighbour_height_ratio(box, neighbour, mean) == pytest.approx(
+        naive.neighbour_height_ratio(labels, stone, others)
+    )
     assert interlocking_width_ratio(landscape, box, end) == pytest.approx(
-        naive.interlocking(wall.labels, stone, end)
+        naive.interlocking(labels, stone, end)
+    )
+    assert inward_slope(landscape, posed, col) == pytest.approx(
+        naive.inward_slope(stone, col + posed.anchor[0])
     )
 
 
@@ -104,37 +88,24 @@ def test_of_equals_the_higher_neighbour_and_the_first_joint_are_taken():
     assert joints_below(landscape, Box(15, 40, 8, 11), 0) == (None, None)
 
 
-@pytest.mark.parametrize(
-    ("edges", "box", "share"),
-    [
+def test_bonds():
+    for edges, box, share in (
         ((0, 20, 40, 60), (10, 30), 0.5),  # running bond
         ((0, 20, 40, 60), (20, 40), 0.0),  # stack bond
         ((40, 60), (36, 56), 0.8),  # the end of the wall at 60 is no joint
         ((0, 20), (4, 24), 0.8),  # nor is that at 0
-    ],
-)
-def test_bonds(edges, box, share):
-    course = tuple(Box(a, b, 0, 10) for a, b in itertools.pairwise(edges))
-    landscape = Landscape(Wall.empty(Site(60, 30)).occupied, course)
-    assert interlocking_width_ratio(landscape, Box(*box, 10, 20), 5) == pytest.approx(share)
+    ):
+        course = tuple(Box(a, b, 0, 10) for a, b in itertools.pairwise(edges))
+        landscape = Landscape(Wall.empty(Site(60, 30)).occupied, course)
+        assert interlocking_width_ratio(landscape, Box(*box, 10, 20), 5) == pytest.approx(share)
 
 
 EMPTY = Landscape.of(Wall.empty(Site(40, 20)))
 
 
-@repeatable(80)
-@given(scene=posed_on_walls())
-def test_is_is_that_of_the_wall_image(scene):
-    wall, posed, row, col = scene
-    stone = naive.painted(wall.occupied.shape, posed.mask, row, col)
-    assert inward_slope(Landscape.of(wall), posed, col) == pytest.approx(
-        naive.inward_slope(stone, col + posed.anchor[0])
-    )
-
-
-@pytest.mark.parametrize(
-    ("tops", "x_c", "col", "slope"),
-    [
+def test_slopes():
+    """Falling inwards is positive at both ends."""
+    for tops, x_c, col, slope in (
         # Highest points: column 0 (outermost of two), and column 2, one px lower.
         ((3, 3, 2, 1), 1.7, 0, 0.5),
         ((3, 3, 2, 1), 1.7, 36, -0.5),
@@ -143,26 +114,21 @@ def test_is_is_that_of_the_wall_image(scene):
         ((3, 3, 3), 1.5, 0, 0.0),  # level
         ((3,), 0.5, 0, 0.0),
         ((1, 2, 3, 2, 1), 2.5, 0, 0.0),  # a peak exactly at the centroid slopes to neither side
-    ],
-)
-def test_slopes(tops, x_c, col, slope):
-    """Falling inwards is positive at both ends."""
-    mask = np.arange(max(tops))[::-1, None] < np.array(tops)
-    posed = PosedStone(Stone(1, mask), 0.0, 1.0, mask, (x_c, 1.0))
-    assert inward_slope(EMPTY, posed, col) == pytest.approx(slope)
+    ):
+        mask = np.arange(max(tops))[::-1, None] < np.array(tops)
+        posed = PosedStone(Stone(1, mask), 0.0, 1.0, mask, (x_c, 1.0))
+        assert inward_slope(EMPTY, posed, col) == pytest.approx(slope)
 
 
-@pytest.mark.parametrize(
-    ("left", "right", "expected"), [(0, 5, True), (4, 9, True), (5, 9, False), (31, 36, True)]
-)
-def test_boundary_stones_are_nearer_to_an_end_than_the_narrowest_is_wide(left, right, expected):
-    assert is_boundary(EMPTY, Box(left, right, 0, 3), narrowest_px=5) is expected
+def test_boundary_stones_are_nearer_to_an_end_than_the_narrowest_is_wide():
+    for left, right, near in ((0, 5, True), (4, 9, True), (5, 9, False), (31, 36, True)):
+        assert is_boundary(EMPTY, Box(left, right, 0, 3), narrowest_px=5) is near
 
 
 def test_names_are_those_of_the_paper_and_boundary_stones_are_judged_by_is():
-    found = Indices(SF=0.9, LFR=0.8, GDS=0.7, NHR=0.1, IWR=0.5, IS=-0.2, LLC=0.4, boundary=False)
-    assert list(found.as_dict()) == ["SF", "LFR", "GDS", "NHR", "IWR", "IS", "LLC"]
-    assert list(found.as_dict().values()) == [0.9, 0.8, 0.7, 0.1, 0.5, -0.2, 0.4]
+    values = {"SF": 0.9, "LFR": 0.8, "GDS": 0.7, "NHR": 0.1, "IWR": 0.5, "IS": -0.2, "LLC": 0.4}
+    found = Indices(**values, boundary=False)
+    assert list(found.as_dict().items()) == list(values.items())
     assert (found.third, dataclasses.replace(found, boundary=True).third) == (0.5, -0.2)
 
 

@@ -9,25 +9,17 @@ from drystone.errors import PlanError
 from drystone.whole_files import remove_parts, write_whole
 
 
-def test_a_file_is_written_and_replaced(tmp_path):
-    path = tmp_path / "a.txt"
-    for data in (b"one", b"two"):
-        write_whole(path, data)
-        assert path.read_bytes() == data
-    assert list(tmp_path.iterdir()) == [path]
-
-
-@pytest.mark.parametrize("place", ["fsync", "replace"])
-def test_an_interrupt_leaves_nothing_behind(place, tmp_path, monkeypatch):
+def test_an_interrupt_leaves_nothing_behind(tmp_path, monkeypatch):
     def interrupt(*_):
         assert len(list(tmp_path.iterdir())) == 1
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(f"os.{place}", interrupt)
-    with pytest.raises(KeyboardInterrupt):
-        write_whole(tmp_path / "a.txt", b"one")
-    monkeypatch.undo()
-    assert list(tmp_path.iterdir()) == []
+    for place in ("fsync", "replace"):
+        with monkeypatch.context() as patch:
+            patch.setattr(f"os.{place}", interrupt)
+            with pytest.raises(KeyboardInterrupt):
+                write_whole(tmp_path / "a.txt", b"one")
+        assert list(tmp_path.iterdir()) == []
 
 
 def test_a_full_disk_names_the_file_and_leaves_it_as_it_was(tmp_path, monkeypatch):
@@ -46,12 +38,15 @@ def test_a_full_disk_names_the_file_and_leaves_it_as_it_was(tmp_path, monkeypatc
 
 
 def test_a_file_is_on_the_disk_before_it_has_its_name(tmp_path, monkeypatch):
-    done = []
+    done, path = [], tmp_path / "a.txt"
     synced, replaced = os.fsync, os.replace
     monkeypatch.setattr("os.fsync", lambda file: (done.append("fsync"), synced(file)))
     monkeypatch.setattr("os.replace", lambda a, b: (done.append("replace"), replaced(a, b)))
-    write_whole(tmp_path / "a.txt", b"one")
-    assert done == ["fsync", "replace"]
+    for data in (b"one", b"two"):
+        write_whole(path, data)
+        assert path.read_bytes() == data
+    assert done == ["fsync", "replace"] * 2
+    assert list(tmp_path.iterdir()) == [path]
 
 
 def test_what_a_killed_run_was_writing_is_removed_and_nothing_else(tmp_path, monkeypatch):

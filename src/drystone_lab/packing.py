@@ -57,12 +57,9 @@ def load_packer() -> Any:
     try:
         return import_module("spyrrow")
     except ImportError as error:
-        raise UsageError(
-            "E305",
-            "spyrrow is not installed, and it packs the strips.",
-            where="packing",
-            cure="Install it with `pip install drystone[bench]`.",
-        ) from error
+        what = "spyrrow is not installed, and it packs the strips."
+        cure = "Install it with `pip install drystone[bench]`."
+        raise UsageError("E305", what, where="packing", cure=cure) from error
 
 
 def packed_width_px(

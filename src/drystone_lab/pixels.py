@@ -207,16 +207,8 @@ def fitted_order(heights_px: Sequence[int], errors: Sequence[float]) -> float:
 def _alphas(model: RigidBlockModel) -> Points:
     """Return both load factors: 0 where blocks do not stand, nan where there is no number."""
     both = lateral_resistance(model)
-    return np.array(
-        [
-            0.0
-            if end.status is LimitStatus.UNSTABLE
-            else np.nan
-            if end.alpha is None
-            else end.alpha
-            for end in (both.left, both.right)
-        ]
-    )
+    found = [0.0 if x.status is LimitStatus.UNSTABLE else x.alpha for x in (both.left, both.right)]
+    return np.array(found, float)  # nan for None
 
 
 BRICK_PX = 20

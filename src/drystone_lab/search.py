@@ -214,11 +214,9 @@ def read_results(path: Path) -> dict[SearchRun, SearchResult]:
     """Read the results that a table holds; none when there is no table; E148 for another file."""
     if not path.exists():
         return {}
-    refused = UsageError(
-        "E148",
-        "this is not a table of searches of this version.",
-        cure="Name another file, which is begun anew, or take out the line if it was cut off.",
-    )
+    what = "this is not a table of searches of this version."
+    cure = "Name another file, which is begun anew, or take out the line if it was cut off."
+    refused = UsageError("E148", what, cure=cure)
     return dict(read_rows(path, COLUMNS, _row, refused))
 
 
@@ -319,12 +317,9 @@ def chosen_ways(names: Sequence[str]) -> tuple[str, ...]:
     """Return the names of all ways, or those that are named; E138 for a name that none has."""
     unknown = set(names) - {*WAYS}
     if unknown:
-        raise UsageError(
-            "E138",
-            f"there is no way to search that is called {min(unknown)!r}.",
-            where="--policy",
-            cure=f"There are {', '.join(map(repr, WAYS))}.",
-        )
+        what = f"there is no way to search that is called {min(unknown)!r}."
+        cure = f"There are {', '.join(map(repr, WAYS))}."
+        raise UsageError("E138", what, where="--policy", cure=cure)
     return tuple(way for way in WAYS if not names or way in names)
 
 
@@ -357,14 +352,13 @@ def run(settings: BenchSettings) -> tuple[Table, ...]:
     """Let every method look for every wall with every seed."""
     own = [name for name, _ in settings.changes if name in ("geometry", "search.budget")]
     if own:
-        raise UsageError(
-            "E138",
-            f"{own[0]} cannot be replaced: walls are searched on outlines, for a time.",
-            where="--settings",
-            cure="Leave it out; see --only and --seconds.",
-        )
+        what = f"{own[0]} cannot be replaced: walls are searched on outlines, for a time."
+        cure = "Leave it out; see --only and --seconds."
+        raise UsageError("E138", what, where="--settings", cure=cure)
     method_settings("best").updated(nested(settings.changes))  # E123 for what there is not
-    times, seeds = _effort(settings)
+    seconds, count = (0.1, 2) if settings.quick else (20.0, 6)
+    times = tuple(sorted(set(settings.seconds))) or (seconds,)
+    seeds = range(settings.seed, settings.seed + (settings.seeds or count))
     walls = [
         (target, stones)
         for target in searched_walls(settings)
@@ -390,13 +384,6 @@ def run(settings: BenchSettings) -> tuple[Table, ...]:
         columns = {"<figures>": FIGURES}
         tables.append(worded(of["paired"], differences, columns=columns, seconds=seconds))
     return (*tables, masons_walls(settings))
-
-
-def _effort(settings: BenchSettings) -> tuple[tuple[float, ...], range]:
-    """Return after which times methods are asked, and the seeds."""
-    seconds, seeds = (0.1, 2) if settings.quick else (20.0, 6)
-    times = tuple(sorted(set(settings.seconds))) or (seconds,)
-    return times, range(settings.seed, settings.seed + (settings.seeds or seeds))
 
 
 def _rows(wall: str, stones: int, by_way: ByWay) -> list[tuple[Cell, ...]]:

@@ -168,10 +168,7 @@ def chosen(walls: Sequence[Target], only: Sequence[str], suite: str = "") -> tup
     names = [wall.name for wall in walls]
     for start in only:
         if not any(name.startswith(start) for name in names):
-            raise UsageError(
-                "E138",
-                f"no wall {f'of the suite {suite!r} ' if suite else ''}begins with {start!r}.",
-                where="--only",
-                cure=f"There are {'; '.join(names)}.",
-            )
+            what = f"no wall {f'of the suite {suite!r} ' if suite else ''}begins with {start!r}."
+            cure = f"There are {'; '.join(names)}."
+            raise UsageError("E138", what, where="--only", cure=cure)
     return tuple(wall for wall in walls if wall.name.startswith(tuple(only) or ""))

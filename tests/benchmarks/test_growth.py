@@ -21,10 +21,14 @@ def wall(width, height, *steps):
     return TimedWall(Site(width, height), 0.5, steps)
 
 
-def test_every_wall_is_planned():
+def test_every_larger_wall_is_planned_and_they_have_exponents_over_their_stones():
     *rows, exponents = growth.larger_walls(0, (8, 16)).records()
     assert [row["stones"] for row in (*rows, exponents)] == ["8", "16", "exponent"]
     assert all(row["all"] > 0 for row in rows)
+    walls = {32: wall(280, 80, step(0)), 128: wall(560, 160, step(0), step(1))}
+    *rows, exponents = growth.growth_table(walls).records()
+    assert [row["preparation, ms a stone"] for row in rows] == [15.6, 3.91]
+    assert exponents["preparation, ms a stone"] == pytest.approx(-1.0)
 
 
 def test_times_against_pixels_and_the_numbers_of_the_paper():
@@ -53,13 +57,6 @@ def test_times_against_stones_are_those_of_eight_steps_and_grow_by_the_candidate
     assert rows[1][-2] == pytest.approx((512 + 729 + 1000 + 1331) / 4, abs=5)
     assert rows[1][-1] == pytest.approx(rows[1][-2] / 9.5, abs=0.5)
     assert rows[2][-2] == pytest.approx(2.0)
-
-
-def test_larger_walls_have_exponents_over_their_stones():
-    walls = {32: wall(280, 80, step(0)), 128: wall(560, 160, step(0), step(1))}
-    *rows, exponents = growth.growth_table(walls).records()
-    assert [row["preparation, ms a stone"] for row in rows] == [15.6, 3.91]
-    assert exponents["preparation, ms a stone"] == pytest.approx(-1.0)
 
 
 def test_a_power_law_needs_two_sizes_and_times_above_0():

@@ -1,10 +1,12 @@
 """Run the command line in process, on small stone sets."""
 
 import json
+import re
 import shutil
 from collections.abc import Callable
 from contextlib import contextmanager
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -34,6 +36,19 @@ class Ran:
         assert (self.code, self.out) == (exit_code, ""), self.err
         for words in said:
             assert words in self.err
+
+
+def listed(command):
+    """Names in the row of a command in docs/plan-format.md; options and values are none."""
+    page = (Path(__file__).parents[2] / "docs" / "plan-format.md").read_text("utf-8")
+    (row,) = re.findall(rf"^\| `{command} --json`.*$", page, re.MULTILINE)
+    names = {*re.findall(r"`(\w+)`", row.split("|", 2)[2])}
+    return names - {"raster", "exact", "null", "answers"}
+
+
+def keys(report, *within):
+    """Names at the top of what `--json` prints, and in some of the objects."""
+    return set(report).union(*(report[name] for name in within))
 
 
 def _refuse_constant(name):
@@ -94,26 +109,23 @@ def rewrite(path, tamper):
     path.write_text(json.dumps(content), encoding="utf-8")
 
 
+def _generated(tmp_path_factory, kind, *sizes):
+    path = tmp_path_factory.mktemp("stones") / f"{kind}.png"
+    words = [word for size in sizes for word in ("--set", size)]
+    assert main(["generate", kind, "-o", str(path), "--count", "6", "--seed", "1", *words]) == 0
+    return path
+
+
 @pytest.fixture(scope="session")
 def rubble(tmp_path_factory):
     """Six stones of two courses for a wall of 70 x 30 px."""
-    path = tmp_path_factory.mktemp("stones") / "rubble.png"
-    sizes = ["width_px=70", "height_px=30", "courses=2"]
-    made = main(
-        ["generate", "rubble", "-o", str(path), "--count", "6", "--seed", "1"]
-        + [word for size in sizes for word in ("--set", size)]
-    )
-    assert made == 0
-    return path
+    return _generated(tmp_path_factory, "rubble", "width_px=70", "height_px=30", "courses=2")
 
 
 @pytest.fixture(scope="session")
 def bricks(tmp_path_factory):
     """Six bricks of 20 x 10 px."""
-    path = tmp_path_factory.mktemp("stones") / "bricks.png"
-    sizes = ["--set", "height_px=10", "--set", "aspect=2"]
-    assert main(["generate", "brick", "-o", str(path), "--count", "6", *sizes]) == 0
-    return path
+    return _generated(tmp_path_factory, "brick", "height_px=10", "aspect=2")
 
 
 SIZE = "70x30"
@@ -123,7 +135,8 @@ WALL = ("--wall", SIZE, "--scale", "1", "--method", "paper")
 """A wall for the rubble, planned quickly."""
 
 
-def _planned(stones, tmp_path_factory, *wall):
+def plan_into(tmp_path_factory, stones, *wall):
+    """Plan a wall, and return its folder."""
     folder = tmp_path_factory.mktemp("plans") / "plan"
     with coarse():
         assert main(["plan", str(stones), *wall, "-o", str(folder), "--seed", "1"]) in (0, 4)
@@ -133,13 +146,13 @@ def _planned(stones, tmp_path_factory, *wall):
 @pytest.fixture(scope="session")
 def finished(rubble, tmp_path_factory):
     """The folder of a plan of the rubble; not to be changed."""
-    return _planned(rubble, tmp_path_factory, *WALL)
+    return plan_into(tmp_path_factory, rubble, *WALL)
 
 
 @pytest.fixture(scope="session")
 def standing(bricks, tmp_path_factory):
     """A whole wall that stands in the engine too, the stones beside it; not to be changed."""
-    folder = _planned(bricks, tmp_path_factory, "--wall", "60x20", *WALL[2:])
+    folder = plan_into(tmp_path_factory, bricks, "--wall", "60x20", *WALL[2:])
     shutil.copy(bricks, folder)
     return folder
 
@@ -162,14 +175,14 @@ UNTRIED = ("--set", "settle.trials=0", "--set", "goal.fallen=0")
 @pytest.fixture(scope="session")
 def settled(rubble, tmp_path_factory):
     """The folder of a plan of the rubble on outlines; not to be changed."""
-    return _planned(rubble, tmp_path_factory, *EXACT)
+    return plan_into(tmp_path_factory, rubble, *EXACT)
 
 
 @pytest.fixture(scope="session")
 def metric(rubble, tmp_path_factory):
     """The same plan in metres, of 200 px each; not to be changed."""
     wall = ("--wall", "0.35mx15cm", "--px-per-m", "200", *EXACT[2:])
-    return _planned(rubble, tmp_path_factory, *wall)
+    return plan_into(tmp_path_factory, rubble, *wall)
 
 
 @pytest.fixture

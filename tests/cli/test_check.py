@@ -3,9 +3,7 @@
 import os
 import shutil
 import sys
-from collections.abc import Callable
 from functools import partial
-from typing import Any
 
 import pytest
 from matplotlib.image import imread
@@ -21,12 +19,10 @@ from drystone.physics.scatter import TiltResult
 from drystone.physics.tilt import TiltTrial
 from drystone.verify.check import check_plan
 from drystone.verify.outlines import plan_polygons
-from tests.cli.conftest import rewrite
+from tests.cli.conftest import keys, listed, rewrite
 from tests.verify.exact_examples import hanging_example
 
 NO_ENGINE = "pymunk is not installed (extra `physics`)"
-
-Tamper = Callable[[dict[str, Any]], Any]
 
 
 def lift(plan):
@@ -57,9 +53,11 @@ def test_a_plan_is_checked_from_its_own_folder(plan_copy, run, monkeypatch):
     run("check", plan_copy).refused("E202", "--stones", exit_code=3)
 
 
-def test_a_wall_that_stands(standing, run):
+def test_a_wall_that_stands(standing, tmp_path, run):
     pytest.importorskip("pymunk", reason=NO_ENGINE)
-    report = run("check", standing, "--physics", "--json").json()
+    asked = ("check", standing, "--physics", "--json", "--picture", tmp_path / "x.png")
+    report = run(*asked).json()
+    assert keys(report, "physics") == listed("check")
     physics, metrics = report["physics"], report["metrics"]
     assert (report["ok"], physics["fallen"], physics["first_fall"]) == (True, [], None)
     assert 0.0 < physics["largest_move"] < 3.0
@@ -76,24 +74,24 @@ def test_a_stone_that_falls_is_named_and_drawn(plan_copy, run, monkeypatch):
     """A fall is a failed check only where the engine was asked."""
     pytest.importorskip("pymunk", reason=NO_ENGINE)
     # By this measure the stone that settles by a px has fallen.
-    strict = partial(build_up, settings=BuildSettings(moved_share=0.03))
+    strict, drawn = partial(build_up, settings=BuildSettings(moved_share=0.03)), "check.png"
     monkeypatch.setattr(check_command, "build_up", strict)
     assert run("check", plan_copy).code == 0
-    assert not (plan_copy / "check.png").exists()
+    assert not (plan_copy / drawn).exists()
     ran = run("check", plan_copy, "--physics")
-    assert (ran.code, " is valid, but the wall falls in the engine\n" in ran.out) == (5, True)
-    assert "  falls                stone " in ran.out
-    assert "not tilted" in ran.out
-    assert f"{plan_copy / 'check.png'}\n" in ran.out
-    assert is_picture(plan_copy / "check.png")
     again = run("check", plan_copy, "--physics", "--json")
     report = again.json()
-    assert (again.code, report["ok"]) == (5, False)
-    assert [p["code"] for p in report["problems"]] == ["E241"]
-    assert report["problems"][0]["step"] == report["physics"]["first_fall"]
-    assert report["picture"] == str(plan_copy / "check.png")
+    assert (ran.code, again.code, report["ok"]) == (5, 5, False)
     physics = report["physics"]
-    assert f"after step {physics['first_fall']}\n" in ran.out
+    for said in (
+        " is valid, but the wall falls in the engine\n", "  falls                stone ",
+        "not tilted", f"{plan_copy / drawn}\n", f"after step {physics['first_fall']}\n",
+    ):  # fmt: skip
+        assert said in ran.out
+    assert is_picture(plan_copy / drawn)
+    assert report["picture"] == str(plan_copy / drawn)
+    fall = ("E241", physics["first_fall"])
+    assert [(p["code"], p["step"]) for p in report["problems"]] == [fall]
     assert [move["id"] for move in physics["moves"] if move["fell"]] == physics["fallen"]
     assert (physics["tilt_left"], physics["tilt_right"]) == (None, None)
 
@@ -105,40 +103,25 @@ def test_a_claim_that_the_engine_contradicts_fails(standing, tmp_path, run, monk
     monkeypatch.setattr(check_command, "tilt_of", lambda _: weak)
     standing = shutil.copytree(standing, tmp_path / "standing")
     assert run("check", standing).code == 0
-    ran = run("check", standing, "--physics")
+    ran, report = (run("check", standing, "--physics", *more) for more in ((), ("--json",)))
     assert (ran.code, " is valid, but the engine contradicts it\n" in ran.out) == (5, True)
     for side in ("left", "right"):
         assert f"E242 tilted to the {side} the wall comes down by alpha = 0.310 in" in ran.out
-    report = run("check", standing, "--physics", "--json")
     assert (report.code, report.json()["ok"]) == (5, False)
     assert [p["code"] for p in report.json()["problems"]] == ["E242", "E242"]
 
 
-def test_a_wall_with_a_stone_missing_is_not_built(plan_copy, run):
+def test_what_is_not_built_in_the_engine(plan_copy, run, monkeypatch):
     pytest.importorskip("pymunk", reason=NO_ENGINE)
+    with monkeypatch.context() as patch:
+        patch.setitem(sys.modules, "pymunk", None)
+        run("check", plan_copy, "--physics").refused("E305")
+        assert run("check", plan_copy).code == 0
     rewrite(plan_copy / "plan.json", lambda plan: plan["steps"][0].update(stone=99))
     ran = run("check", plan_copy, "--physics")
-    assert ran.code == 5
-    assert "not built there, as a step of the plan places nothing" in ran.out
+    said = "not built there, as a step of the plan places nothing"
+    assert (ran.code, said in ran.out) == (5, True)
     assert run("check", plan_copy, "--physics", "--json").json()["physics"] is None
-
-
-def test_without_the_engine(plan_copy, run, monkeypatch):
-    monkeypatch.setitem(sys.modules, "pymunk", None)
-    run("check", plan_copy, "--physics").refused("E305")
-    assert run("check", plan_copy).code == 0
-
-
-@pytest.mark.parametrize(("tamper", "code"), [(push, "E221"), (lift, "E230")])
-def test_what_fails_is_drawn(tamper, code, plan_copy, run):
-    rewrite(plan_copy / "plan.json", tamper)
-    ran = run("check", plan_copy)
-    path = plan_copy / "check.png"
-    assert (ran.code, code in ran.out, f"picture  {path}\n" in ran.out) == (5, True, True)
-    assert is_picture(path)
-    assert (
-        f"picture  {path} (in place of that of an earlier check)\n" in run("check", plan_copy).out
-    )
 
 
 def views(plan, stones):
@@ -147,35 +130,38 @@ def views(plan, stones):
     return views_of(checked)
 
 
-def tampered_views(folder, tamper):
-    """The plan in a folder after it was changed, and what a check draws of it."""
-    rewrite(folder / "plan.json", tamper)
-    plan = read_plan(folder)
-    return plan, views(plan, read_stones(folder / "rubble.png"))
+@pytest.mark.parametrize(("tamper", "code"), [(push, "E221"), (lift, "E230")])
+def test_what_fails_is_drawn(tamper, code, plan_copy, run):
+    rewrite(plan_copy / "plan.json", tamper)
+    ran, again = run("check", plan_copy), run("check", plan_copy)
+    path = plan_copy / "check.png"
+    assert (ran.code, code in ran.out, f"picture  {path}\n" in ran.out) == (5, True, True)
+    assert is_picture(path)
+    assert f"picture  {path} (in place of that of an earlier check)\n" in again.out
+    plan = read_plan(plan_copy)
+    drawn = views(plan, read_stones(plan_copy / "rubble.png"))
+    view = next(view for view in drawn if view.title.startswith(f"{code} step "))
+    if tamper is push:
+        assert (view.size, len(view.planned)) == ((70.0, 30.0), len(plan.steps))
+        # What is named by the problem, with what it has in common with its neighbours.
+        assert drawn[0] is view
+        assert set() < set(view.concerned) < {step.stone for step in plan.stone_steps}
+        assert view.common
+    else:
+        # An unstable wall may fall in many ways; in any of them this stone goes down.
+        last = plan.stone_steps[-1].stone
+        assert ("begins to fall" in view.title, last in view.concerned) == (True, True)
+        down = view.ended[last] - view.planned[last]
+        assert (down[:, 1] < -1.0).all()
 
 
-def test_views_of_an_overlap(plan_copy):
-    plan, (view, *_) = tampered_views(plan_copy, push)
-    assert view.title.startswith("E221 step ")
-    # What is named by the problem, with what it has in common with its neighbours.
-    assert set() < set(view.concerned) < {step.stone for step in plan.stone_steps}
-    assert view.common
-    assert view.size == (70.0, 30.0)
-    assert len(view.planned) == len(plan.steps)
+def test_a_stone_that_hangs_by_friction_is_drawn_where_it_hangs():
+    hanging = hanging_example()
+    (view,) = views(hanging.plan, hanging.stones)
+    assert ("E237" in view.title, list(view.concerned), bool(view.ended)) == (True, [3], False)
 
 
-def test_views_of_a_wall_that_does_not_stand(plan_copy):
-    plan, drawn = tampered_views(plan_copy, lift)
-    last = plan.stone_steps[-1].stone
-    view = next(view for view in drawn if view.title.startswith("E230 step "))
-    # An unstable wall may fall in many ways; in any of them this stone goes down.
-    assert last in view.concerned
-    down = view.ended[last] - view.planned[last]
-    assert (down[:, 1] < -1.0).all()
-    assert "begins to fall" in view.title
-
-
-def test_a_picture_where_it_is_asked_for(plan_copy, tmp_path, run):
+def test_a_picture_where_it_is_asked_for(plan_copy, tmp_path, run, monkeypatch):
     path = tmp_path / "new" / "wall.png"
     ran = run("check", plan_copy, "--picture", path)
     assert (ran.code, f"picture  {path}\n" in ran.out) == (0, True)
@@ -186,18 +172,14 @@ def test_a_picture_where_it_is_asked_for(plan_copy, tmp_path, run):
     assert path.read_bytes() != before
     assert not (plan_copy / "check.png").exists()
 
-
-def test_a_folder_that_takes_no_picture(plan_copy, run, monkeypatch):
     def refuse(*_):
         raise PermissionError(13, "Permission denied")
 
-    rewrite(plan_copy / "plan.json", push)
     monkeypatch.setattr(os, "replace", refuse)
     ran = run("check", plan_copy)
     assert (ran.code, "E221" in ran.out, "picture  not written: " in ran.out) == (5, True, True)
     assert "(Permission denied). Give a place with --picture." in ran.out
-    report = run("check", plan_copy, "--json").json()
-    assert report["picture"] is None
+    assert run("check", plan_copy, "--json").json()["picture"] is None
 
 
 def test_the_engine_is_told_how_deep_outlines_overlap(plan_copy, run, monkeypatch):
@@ -234,16 +216,9 @@ def test_words_of_the_engine(plan_copy):
 
 
 def test_what_cannot_be_seen_is_not_drawn(plan_copy, tmp_path, run):
+    path, unseen = plan_copy / "check.png", tmp_path / "none.png"
     rewrite(plan_copy / "plan.json", lambda plan: plan["metrics"].update(F_LR=0.99))
     ran = run("check", plan_copy)
-    assert (ran.code, "picture" in ran.out) == (5, False)
-    assert not (plan_copy / "check.png").exists()
+    assert (ran.code, "picture" in ran.out, path.exists()) == (5, False, False)
     rewrite(plan_copy / "plan.json", lambda plan: plan.update(steps=[]))
-    assert run("check", plan_copy, "--picture", tmp_path / "none.png").code == 5
-    assert not (tmp_path / "none.png").exists()
-
-
-def test_a_stone_that_hangs_by_friction_is_drawn_where_it_hangs():
-    hanging = hanging_example()
-    (view,) = views(hanging.plan, hanging.stones)
-    assert ("E237" in view.title, list(view.concerned), bool(view.ended)) == (True, [3], False)
+    assert (run("check", plan_copy, "--picture", unseen).code, unseen.exists()) == (5, False)

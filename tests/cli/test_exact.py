@@ -2,20 +2,16 @@
 
 import json
 import shutil
-from collections.abc import Callable
-from functools import partial
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 
 from drystone.io.plan_folder import BLOCKS
 from drystone.io.plan_json import read_plan
+from drystone.model.steps import piece_id
 from tests.cli.conftest import EXACT, UNTRIED, rewrite
-from tests.cli.test_plan import FILES
-
-Tamper = Callable[[dict[str, Any]], Any]
+from tests.cli.test_planning import FILES
 
 
 def polygons(folder):
@@ -24,32 +20,21 @@ def polygons(folder):
     return {block["id"]: np.array(block["polygon"]) for block in blocks}
 
 
-def shift(blocks, by):
-    """Move the last block to the right, by some of the plan's units."""
-    last = blocks["blocks"][-1]
-    last["polygon"] = [[x + by, y] for x, y in last["polygon"]]
-
-
-def test_best_plans_on_outlines_and_writes_them(settled):
+def test_best_plans_on_outlines_and_writes_them(rubble, settled, finished, tmp_path, run):
     assert {path.name for path in settled.iterdir()} == FILES | {BLOCKS}
     plan = read_plan(settled)
     assert (plan.method, plan.settings["geometry"]) == ("best", "exact")
     assert 'geometry = "exact"' in (settled / "settings.toml").read_text(encoding="utf-8")
-    placed = polygons(settled)
-    steps = [step.stone for step in plan.stone_steps] + [step.id for step in plan.wedge_steps]
-    assert sorted(placed) == sorted(steps)
+    assert sorted(polygons(settled)) == sorted(map(piece_id, plan.steps))
     assert "their outlines" in (settled / "report.html").read_text(encoding="utf-8")
-
-
-def test_json_says_what_the_contact_tolerance_changes(rubble, settled, finished, tmp_path, run):
+    # JSON says what the contact tolerance changes; there is none on pixels.
     seeded = ("plan", rubble, *EXACT, "--seed", 1)
     summary = run(*seeded, "-o", tmp_path, "--json", "--profile").json()
-    half, double = summary["F_LR_half"], summary["F_LR_double"]
-    assert half is not None and double is not None  # noqa: PT018
+    assert None not in (summary["F_LR_half"], summary["F_LR_double"])
     assert summary["profile"]["parts"]["placement"] > 0
     for name in ("plan.json", BLOCKS, "wall.png", "picture.png"):
         assert (tmp_path / name).read_bytes() == (settled / name).read_bytes()
-    metrics = read_plan(finished).metrics  # on pixels
+    metrics = read_plan(finished).metrics
     assert (metrics.F_LR_half, metrics.F_LR_double) == (None, None)
 
 
@@ -75,8 +60,8 @@ def test_metres(rubble, settled, metric, tmp_path, run):
     for one, other in zip(metres.stone_steps, px.stone_steps, strict=True):
         assert (one.stone, one.angle_deg) == (other.stone, other.angle_deg)
         assert np.array(one.centroid) * 200 == pytest.approx(np.array(other.centroid), abs=1e-9)
-    there, here = polygons(out), polygons(settled)
-    for block, corners in here.items():
+    there = polygons(out)
+    for block, corners in polygons(settled).items():
         assert there[block] * 200 == pytest.approx(corners, abs=1e-9)
     assert (out / "wall.png").read_bytes() == (settled / "wall.png").read_bytes()
     assert run("check", out, "--stones", rubble).code == 0
@@ -84,7 +69,12 @@ def test_metres(rubble, settled, metric, tmp_path, run):
         report = run("analyse", folder, "--json").json()
         assert report["F_LR"] == pytest.approx(px.metrics.F_LR)
     for by_px, accepted in ((0.005, True), (0.02, False)):
-        rewrite(out / BLOCKS, partial(shift, by=by_px / 200))
+
+        def shift(blocks, by=by_px / 200):
+            last = blocks["blocks"][-1]
+            last["polygon"] = [[x + by, y] for x, y in last["polygon"]]
+
+        rewrite(out / BLOCKS, shift)
         assert (run("analyse", out).code == 0) == accepted
     # The same stones in the same order, but in another unit.
     shutil.copy(settled / BLOCKS, out / BLOCKS)
@@ -95,38 +85,36 @@ def foreign(path):
     rewrite(path, lambda blocks: blocks["blocks"][0].update(id=99))
 
 
-@pytest.mark.parametrize(
-    ("spoil", "said"),
-    [
+def test_a_plan_needs_its_own_blocks(settled_copy, run):
+    path = settled_copy / BLOCKS
+    whole = path.read_bytes()
+    for spoil, said in (
         (Path.unlink, ("E133", "there is no blocks.json beside the plan")),
         (foreign, ("E133", "has other stones than the plan")),
         (lambda path: path.write_text("[1]"), ("E133", "is not a block model")),
         (lambda path: path.write_text("{}"), ("E303", "there is neither")),
         (lambda path: path.write_text("{"), ("E132", "is not valid JSON", "or plan again")),
-    ],
-)
-def test_a_plan_needs_its_own_blocks(spoil, said, settled_copy, run):
-    spoil(settled_copy / BLOCKS)
-    for command in ("measure", "analyse"):
-        run(command, settled_copy).refused(*said, exit_code=3)
-    ran = run("check", settled_copy)  # it takes the outlines from the stones, and compares these
-    there = (settled_copy / BLOCKS).exists()
-    assert (ran.code, "E238" in ran.out) == ((5, True) if there else (0, False))
+    ):
+        path.write_bytes(whole)
+        spoil(path)
+        for command in ("measure", "analyse"):
+            run(command, settled_copy).refused(*said, exit_code=3)
+        # It takes the outlines from the stones, and compares these.
+        ran = run("check", settled_copy)
+        assert (ran.code, "E238" in ran.out) == ((5, True) if path.exists() else (0, False))
 
 
 def test_a_wedge_in_another_place_is_not_that_of_the_plan(settled_copy, run):
     """A stone of the plan stands for a wedge here, so that there is one in any case."""
-    plan = json.loads((settled_copy / "plan.json").read_text(encoding="utf-8"))
-    last = plan["steps"][-1]
-    block = last.get("stone", last.get("id"))
-    corners = polygons(settled_copy)[block].tolist()
-    wedge = {"step": last["step"], "kind": "wedge", "id": block, "under": plan["steps"][0]["stone"],
-             "polygon": corners, "alpha_left": 0.1, "alpha_right": 0.1}  # fmt: skip
-    rewrite(settled_copy / "plan.json", lambda plan: plan["steps"].__setitem__(-1, wedge))
-    assert run("analyse", settled_copy).code == 0
-    wedge["polygon"] = [[x, y + 0.02] for x, y in corners]
-    rewrite(settled_copy / "plan.json", lambda plan: plan["steps"].__setitem__(-1, wedge))
-    assert "has its stones in other places" in run("analyse", settled_copy).err
+    first, *_, last = read_plan(settled_copy).steps
+    corners = polygons(settled_copy)[piece_id(last)].tolist()
+    wedge = {"step": last.step, "kind": "wedge", "id": piece_id(last), "under": first.stone,
+             "alpha_left": 0.1, "alpha_right": 0.1}  # fmt: skip
+    for up, said in ((0.0, ""), (0.02, "has its stones in other places")):
+        wedge["polygon"] = [[x, y + up] for x, y in corners]
+        rewrite(settled_copy / "plan.json", lambda plan: plan["steps"].__setitem__(-1, wedge))
+        ran = run("analyse", settled_copy)
+        assert (ran.code == 0, said in ran.err) == (not said, True)
 
 
 def test_files_of_an_earlier_plan_do_not_stay(settled_copy, rubble, tmp_path, run):

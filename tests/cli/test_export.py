@@ -1,7 +1,6 @@
 """`drystone export`: what it writes, what it refuses, and that nothing is written then."""
 
 import json
-import shutil
 import sys
 from pathlib import Path
 from xml.etree import ElementTree as ET
@@ -17,16 +16,10 @@ QUICK = ("poses", "compas", "moveit", "urdf", "obj", "glb", "stl", "csv", "geojs
 """Formats that need no drawing."""
 
 
-@pytest.fixture(scope="module")
-def planned(tmp_path_factory):
-    """The folder of a plan in px; not to be changed."""
-    return write_plan_folder("exact", tmp_path_factory.mktemp("plan"))
-
-
 @pytest.fixture
-def plan(planned, tmp_path):
+def plan(tmp_path):
     """The plan.json of a plan in px."""
-    return Path(shutil.copytree(planned, tmp_path / "plan")) / "plan.json"
+    return write_plan_folder("exact", tmp_path) / "plan.json"
 
 
 def tree(folder):
@@ -36,48 +29,37 @@ def tree(folder):
     }
 
 
-def test_formats_are_listed(run):
-    ran = run("export", "--list")
-    assert ran.code == 0
-    assert [line.partition(":")[0] for line in ran.out.splitlines()] == list(FORMATS)
-
-
 def test_files_are_added_beside_the_plan(run, plan):
     before = tree(plan.parent)
     scale = ("--px-per-m", 200, "--thickness", 0.25, "--density", 2000)
     ran = run("export", plan, "--to", *QUICK, *scale)
-    assert ran.code == 0, ran.err
+    assert (ran.code, ran.err) == (0, "")
+    assert [line.partition(":")[0] for line in ran.out.splitlines()] == list(QUICK)
     after = tree(plan.parent)
     assert {name: after[name] for name in before} == before
-    new = set(after) - set(before)
     assert {"poses.json", "assembly.compas.json", "scene.yaml", "wall.scene", "urdf/wall.urdf",
             "wall.obj", "wall.mtl", "wall.glb", "stl/wedge_010.stl", "steps.csv",
-            "wall.geojson"} <= new  # fmt: skip
-    assert [line.partition(":")[0] for line in ran.out.splitlines()] == list(QUICK)
-    assert ran.err == ""
-    poses = json.loads((plan.parent / "poses.json").read_bytes())
+            "wall.geojson"} <= set(after) - set(before)  # fmt: skip
+    poses = json.loads(after["poses.json"])
     assert (poses["thickness_m"], poses["density_kg_m3"]) == (0.25, 2000)
+    ran = run("export", "--list")
+    assert (ran.code, [line.partition(":")[0] for line in ran.out.splitlines()]) == (0, [*FORMATS])
 
 
 def test_json_names_every_file(run, plan, tmp_path):
-    folder = tmp_path / "new" / "deep"
-    asked = (*QUICK, "csv", "--px-per-m", 200, "-o", folder, "--json")
-    ran = run("export", plan.parent, "--to", *asked)
+    folder, ruled = tmp_path / "new" / "deep", tmp_path / "ruled"
+    asked = ("export", plan.parent, "--to", *QUICK)
+    ran = run(*asked, "csv", "--px-per-m", 200, "-o", folder, "--json")
     files = ran.json()["files"]
     assert list(files) == list(QUICK)
     named = sorted(Path(name) for names in files.values() for name in names)
     assert named == sorted(path for path in folder.rglob("*") if path.is_file())
     assert ("no --thickness: parts are 0." in ran.err, "W123" in ran.err) == (True, False)
-    odd = run("export", plan, "--to", "csv", "--px-per-m", 20_000, "--json")
-    assert "W123" in odd.err
-
-
-def test_a_ruler_is_a_scale(run, plan, tmp_path):
-    for folder, scale in (("a", ("--px-per-m", "200")), ("b", ("--ruler", "0,0,30,40=25cm"))):
-        assert run("export", plan, "--to", *QUICK, *scale, "-o", tmp_path / folder).code == 0
-    assert tree(tmp_path / "a") == tree(tmp_path / "b")
-    both = run("export", plan, "--to", "csv", "--px-per-m", "200", "--ruler", "0,0,3,4=1m")
-    assert both.code == 2
+    # A ruler is a scale.
+    assert run(*asked, "--ruler", "0,0,30,40=25cm", "-o", ruled).code == 0
+    assert tree(ruled) == tree(folder)
+    assert run(*asked, "--px-per-m", "200", "--ruler", "0,0,3,4=1m").code == 2
+    assert "W123" in run("export", plan, "--to", "csv", "--px-per-m", 20_000, "--json").err
 
 
 def test_a_title_of_any_letters_makes_files_that_can_be_read(run, plan):
@@ -92,27 +74,21 @@ def test_a_title_of_any_letters_makes_files_that_can_be_read(run, plan):
 
 
 def test_exports_of_an_earlier_plan_are_named(run, plan_copy, rubble):
-    folder = plan_copy
-    assert run("export", folder, "--to", "csv", "stl", "--px-per-m", 200).code == 0
-    said = run("plan", rubble, *WALL, "-o", folder, "--overwrite").err
-    assert f"W181 of an earlier plan: stl/, steps.csv, in {folder}." in said
-    assert (folder / "steps.csv").exists()
-
-
-def test_files_of_another_plan_in_a_folder_of_its_own_are_named(run, plan):
-    first = run("export", plan, "--to", "stl", "--px-per-m", "200")
-    assert "W180" not in first.err
-    (plan.parent / "stl" / "stone_999.stl").write_bytes(b"of an earlier plan")
-    again = run("export", plan, "--to", "stl", "--px-per-m", "200", "--overwrite")
+    asked = ("export", plan_copy, "--to", "csv", "stl", "--px-per-m", 200)
+    other, table = plan_copy / "stl" / "stone_999.stl", plan_copy / "steps.csv"
+    first = run(*asked)
+    assert (first.code, "W180" in first.err) == (0, False)
+    other.write_bytes(b"of an earlier plan")
+    again = run(*asked, "--overwrite")
     assert (again.code, "W180 not of this plan: stl/stone_999.stl, in" in again.err) == (0, True)
-    assert (plan.parent / "stl" / "stone_999.stl").exists()
+    said = run("plan", rubble, *WALL, "-o", plan_copy, "--overwrite").err
+    assert f"W181 of an earlier plan: stl/, steps.csv, in {plan_copy}." in said
+    assert (other.exists(), table.exists()) == (True, True)
 
 
 def test_nothing_is_written_when_one_format_cannot_be(run, plan, monkeypatch):
-    before = tree(plan.parent)
-
     def refused(code, *asked):
-        ran = run("export", plan, "--to", "csv", *asked)
+        before, ran = tree(plan.parent), run("export", plan, "--to", "csv", *asked)
         assert (ran.code in (2, 3), code in ran.err, ran.out) == (True, True, "")
         assert tree(plan.parent) == before
         return ran.err
@@ -124,12 +100,10 @@ def test_nothing_is_written_when_one_format_cannot_be(run, plan, monkeypatch):
         patch.setitem(sys.modules, "ezdxf", None)
         refused("E185", "dxf")
     (plan.parent / "photo.png").write_bytes(b"no picture")
-    before = tree(plan.parent)
     refused("E189", "pdf")
 
     def orphan(read):
         next(step for step in read["steps"] if step["kind"] == "wedge")["under"] = 9999
 
     rewrite(plan, orphan)
-    before = tree(plan.parent)
     refused("E214", "gif")

@@ -1,4 +1,4 @@
-"""What is read is never written over, whatever is said of overwriting."""
+"""What is read is never written over, and what cannot be written is refused before the work."""
 
 import os
 import shutil
@@ -8,21 +8,13 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from drystone.cli import output, planning
+from drystone.cli.commands import segment
 from drystone.cli.commands.segment import WRITTEN
 from drystone.io.photo_beside import LABELS, PhotoSidecar, write_sidecar
 from drystone.io.wall_image import write_labels
-from tests.cli.conftest import EXACT, UNTRIED, WALL, masks_in
+from tests.cli.conftest import WALL, masks_in
 from tests.statics.walls import stacked
-
-
-@pytest.fixture
-def photo(tmp_path):
-    """Two stones on blue cloth."""
-    picture = np.full((300, 400, 3), (60, 90, 150), np.uint8)
-    picture[60:140, 60:160] = picture[130:210, 220:330] = (170, 160, 140)
-    path = tmp_path / "photo.jpg"
-    Image.fromarray(picture).save(path)
-    return path
 
 
 def contents(folder):
@@ -58,14 +50,12 @@ def test_what_is_read_is_not_written_over(line, name, rubble, finished, tmp_path
 
 def test_what_a_plan_has_is_not_written_over(rubble, plan_copy, run):
     before, wall = contents(plan_copy), plan_copy / "wall.png"
-    drawn = ("-o", plan_copy, "--load", "gravity")
-    for asked, said in (
-        (("check", plan_copy, "--stones", rubble, "--picture", wall), f"E129 {wall}: is read here"),
-        *((("analyse", plan_copy / name, *drawn), "belongs to the plan")
-          for name in ("", "plan.json", "wall.png")),
-    ):  # fmt: skip
-        run(*asked, "--overwrite").refused("E129", said)
-        assert contents(plan_copy) == before
+    asked = ("check", plan_copy, "--stones", rubble, "--picture", wall, "--overwrite")
+    run(*asked).refused(f"E129 {wall}: is read here")
+    for name in ("", "plan.json", "wall.png"):
+        asked = ("analyse", plan_copy / name, "-o", plan_copy, "--load", "gravity", "--overwrite")
+        run(*asked).refused("E129", "belongs to the plan")
+    assert contents(plan_copy) == before
     plan = (plan_copy / "plan.json").rename(plan_copy / "poses.json")
     asked = ("export", plan, "--to", "csv", "poses", "--px-per-m", 100, "--overwrite")
     run(*asked).refused(f"E129 {plan}: is read here")
@@ -73,16 +63,19 @@ def test_what_a_plan_has_is_not_written_over(rubble, plan_copy, run):
     assert contents(plan_copy) == before
 
 
-def test_segment_keeps_its_photograph(photo, run):
-    given, before = photo, photo.read_bytes()
+def test_segment_keeps_its_photograph(tmp_path, run):
+    """Two stones on blue cloth."""
+    picture = np.full((300, 400, 3), (60, 90, 150), np.uint8)
+    picture[60:140, 60:160] = picture[130:210, 220:330] = (170, 160, 140)
+    photo, out = tmp_path / "photo.png", tmp_path / "out"
+    Image.fromarray(picture).save(photo)
+    before = photo.read_bytes()
     for name, more in (("photo.jpg", ()), ("stones.png", ("--overwrite",))):
-        given = given.rename(photo.with_name(name))
-        ran = run("segment", given, "--px-per-m", 400, "-o", photo.parent, *more)
-        ran.refused(f"E129 {given}: is read here")
-        assert [path.name for path in photo.parent.iterdir()] == [name]
-        assert given.read_bytes() == before
+        photo = photo.rename(tmp_path / name)
+        ran = run("segment", photo, "--px-per-m", 400, "-o", tmp_path, *more)
+        ran.refused(f"E129 {photo}: is read here")
+        assert contents(tmp_path) == {name: before}
     # Another name of the same photograph is seen too.
-    photo, out = given, photo.parent / "out"
     out.mkdir()
     os.link(photo, out / "photo.jpg")
     run("segment", photo, "-o", out, "--overwrite").refused("E129")
@@ -121,50 +114,37 @@ def test_a_plan_keeps_photographs_that_are_not_its_own(rubble, tmp_path, run, mo
         assert [Path(name).read_bytes() for name in names] == [b"mine", b"mine"]
 
 
-def test_plan_keeps_the_choice_that_it_begins_with(rubble, tmp_path, run):
-    asked = ("plan", rubble, *EXACT, *UNTRIED, "--seed", 1, "-o", tmp_path)
-    assert run(*asked, "--pareto").code in (0, 4)
-    first = tmp_path / "pareto" / "01"
-    before = (first / "plan.json").read_bytes()
-    for given in (first, first / "plan.json"):
-        run(*asked, "--from", given, "--overwrite").refused("E129")
-    assert (first / "plan.json").read_bytes() == before
-    # The plan itself is replaced by one that is as good at least.
-    assert run(*asked, "--from", tmp_path, "--overwrite").code in (0, 4)
-
-
 @pytest.mark.parametrize("command", ["plan", "demo"])
 def test_a_choice_that_is_read_is_kept(command, rubble, plan_copy, run):
     """A new plan takes out the choice of an earlier search."""
-    place = plan_copy / "pareto" / "01"
+    place, picture = plan_copy / "pareto" / "01", plan_copy / "pareto.png"
     place.mkdir(parents=True)
     for name in ("plan.json", "settings.toml"):
         shutil.copy(plan_copy / name, place)
-    stones = shutil.copy(rubble, place / "wall.png")
-    before = (place / "settings.toml").read_bytes()
-    more = ("--settings", place / "settings.toml", "-o", plan_copy, "--overwrite")
+    for path in (place / "wall.png", picture):
+        shutil.copy(rubble, path)
+    before, more = contents(place), ("-o", plan_copy, "--overwrite")
     asked = ("plan", rubble, *WALL) if command == "plan" else ("demo",)
-    run(*asked, *more).refused("settings.toml: is read here")
+    said = "settings.toml: is read here"
+    run(*asked, "--settings", place / "settings.toml", *more).refused(said)
     if command == "plan":
-        run("plan", stones, *WALL, *more[2:]).refused("wall.png: is read here")
-        picture = shutil.copy(rubble, plan_copy / "pareto.png")
-        run("plan", picture, *WALL, *more[2:]).refused("pareto.png: is read here")
-    assert (place / "settings.toml").read_bytes() == before
-    assert Path(stones).read_bytes() == rubble.read_bytes()
+        for stones in (place / "wall.png", picture):
+            run("plan", stones, *WALL, *more).refused(f"{stones.name}: is read here")
+        for given in (place, place / "plan.json"):
+            run(*asked, "--from", given, *more).refused("E129")
+    assert contents(place) == before
 
 
 def test_nothing_is_drawn_among_masks(tmp_path, run):
-    masks = masks_in(tmp_path / "masks")
-    before = contents(masks)
-    wall = ("--wall", "40x20", "--scale", "1", "--method", "paper")
-    assert run("plan", masks, *wall, "-o", tmp_path / "out").code in (0, 4)
+    masks, out = masks_in(tmp_path / "masks"), tmp_path / "out"
+    before, plan = contents(masks), ("plan", masks, "--wall", "40x20", *WALL[2:], "-o")
+    assert run(*plan, out).code in (0, 4)
     for asked in (
         ("stones", masks, "-o", masks / "preview.png"),
-        ("plan", masks, *wall, "-o", masks, "--overwrite"),
-        ("check", tmp_path / "out", "--stones", masks, "--picture", masks / "check.png"),
+        (*plan, masks, "--overwrite"),
+        ("check", out, "--stones", masks, "--picture", masks / "check.png"),
     ):
         run(*asked).refused("E129", "among the masks")
-        assert contents(masks) == before
     # A folder of its own is no stone.
     assert run("stones", masks, "-o", masks / "drawn" / "preview.png").code == 0
     assert run("stones", masks).code == 0
@@ -186,17 +166,66 @@ def test_nothing_is_drawn_among_masks(tmp_path, run):
         ("rehearse {plan} --runs 1 -o {at}", "risk.png"),
     ],
 )
-def test_a_file_is_replaced_only_when_that_is_said(
-    line, name, rubble, settled, tmp_path_factory, tmp_path, run
-):
-    at, wall = tmp_path / name, tmp_path_factory.mktemp("wall") / "wall.png"
+def test_a_file_is_replaced_only_when_that_is_said(line, name, rubble, settled, tmp_path, run):
+    wall, folder = tmp_path / "wall.png", tmp_path / "out"
+    at = folder / name
+    folder.mkdir()
     write_labels(stacked((30, 10, 0), (20, 10, 5)), wall)
     at.write_bytes(b"mine")
-    known = {"at": at, "folder": tmp_path, "rubble": rubble, "plan": settled, "wall": wall}
+    known = {"at": at, "folder": folder, "rubble": rubble, "plan": settled, "wall": wall}
     words = [word.format(**known) for word in line.split()]
     run(*words).refused(f"E129 {at}: exists")
-    assert contents(tmp_path) == {name: b"mine"}
+    assert contents(folder) == {name: b"mine"}
     assert run(*words, "--overwrite").code == 0
     assert at.read_bytes() != b"mine"
-    inside = [word.replace(str(tmp_path), str(at)) for word in words]
+    inside = [word.replace(str(folder), str(at)) for word in words]
     run(*inside).refused("E129")  # a file is no folder
+
+
+@pytest.fixture
+def _no_work(monkeypatch):
+    """Nothing is planned or looked for."""
+
+    def refuse_to_work(*_, **__):
+        raise AssertionError("it was planned before the folder was looked at")
+
+    monkeypatch.setattr(planning, "plan_wall", refuse_to_work)
+    monkeypatch.setattr(segment, "segment_photo", refuse_to_work)
+
+
+@pytest.mark.usefixtures("_no_work")
+@pytest.mark.parametrize(
+    ("name", "kind"),
+    [
+        ("report.html", "folder"),
+        ("wall.tif", "folder"),
+        ("pareto.png", "folder"),
+        ("pareto", "file"),
+        ("pareto/02", "file"),
+        ("pareto/01/plan.json", "folder"),
+        ("stones.json", "folder"),
+    ],
+)
+def test_what_is_in_the_way_is_said_before_the_search(name, kind, rubble, tmp_path, run):
+    out = tmp_path / "out"
+    (out / name).mkdir(parents=True)
+    if kind == "file":
+        (out / name).rmdir()
+        (out / name).write_bytes(b"mine")
+    before, said = sorted(out.rglob("*")), f"{name.split('/')[-1]}: is a {kind}"
+    photo = tmp_path / "photo.png"
+    Image.fromarray(np.full((40, 40, 3), 90, np.uint8)).save(photo)
+    asked = ("segment", photo) if name == "stones.json" else ("plan", rubble, *WALL, "--pareto")
+    run(*asked, "-o", out, "--overwrite").refused("E129", said)
+    assert sorted(out.rglob("*")) == before
+
+
+@pytest.mark.usefixtures("_no_work")
+def test_a_folder_that_is_read_only_is_said_before_the_search(rubble, tmp_path, run, monkeypatch):
+    def read_only(**_):
+        raise OSError(30, "Read-only file system")
+
+    monkeypatch.setattr(output, "TemporaryFile", read_only)
+    said = f"E206 {tmp_path}: no file can be written there (Read-only file system)"
+    run("plan", rubble, *WALL, "-o", tmp_path).refused(said, exit_code=3)
+    assert list(tmp_path.iterdir()) == []

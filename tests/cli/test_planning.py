@@ -1,126 +1,295 @@
-"""A plan says what it reads and writes, begins with --from, and tells where its time went."""
+"""`drystone plan`: what it reads, writes, prints and returns."""
 
-import argparse
+import re
+from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
+import tifffile
 from PIL import Image
 
-from drystone.cli import planning
+from drystone.cli import planning, progress
 from drystone.cli.planning import read_line
 from drystone.drawing.words.planned import profile_rows, profile_summary
 from drystone.io.plan_json import read_plan
+from drystone.io.wall_image import write_labels
+from drystone.model.plan import PlanMetrics
 from drystone.model.stone import Stone, StoneSet
+from drystone.planner.profile import PARTS
 from drystone.search.plan_wall import plan_wall
-from tests.cli.conftest import EXACT, UNTRIED, WALL
+from tests.cli.conftest import EXACT, SIZE, UNTRIED, WALL, keys, listed
 from tests.planner import scenes
 
 
-def stones(*sizes):
-    masks = (np.ones((height, width), bool) for width, height in sizes)
-    return StoneSet(tuple(Stone(i, mask) for i, mask in enumerate(masks, 1)))
-
-
 def test_sizes_are_metres_centimetres_or_px():
-    three = stones((62, 24), (20, 30), (44, 30))
-    said = read_line(three, (280.0, 80.0), 200.0, 10.7)
+    sizes = ((62, 24), (20, 30), (44, 30))
+    three = StoneSet(tuple(Stone(i, np.ones(size[::-1], bool)) for i, size in enumerate(sizes, 1)))
     # Medians of the longer and of the shorter sides: 44 and 24 px.
-    assert said == (
-        "Read 3 stones (largest 31.0 x 12.0 cm, median 22.0 x 12.0 cm), wall 1.40 x 0.40 m, "
-        "estimate 11 s"
-    )
-    assert read_line(three, (280.0, 80.5), None, None) == (
-        "Read 3 stones (largest 62 x 24 px, median 44 x 24 px), wall 280 x 80.5 px"
-    )
+    for stones, height, px_per_m, seconds, said in (
+        (three, 80.0, 200.0, 10.7, "Read 3 stones (largest 31.0 x 12.0 cm, median 22.0 x 12.0 cm), "
+         "wall 1.40 x 0.40 m, estimate 11 s"),
+        (three, 80.5, None, None, "Read 3 stones (largest 62 x 24 px, median 44 x 24 px), "
+         "wall 280 x 80.5 px"),
+        (StoneSet(()), 80.0, None, None, "Read 0 stones, wall 280 x 80 px"),
+    ):  # fmt: skip
+        assert read_line(stones, (280.0, height), px_per_m, seconds) == said
     assert "largest 3.10 x 1.20 m" in read_line(three, (280.0, 80.0), 20.0, None)
-    assert read_line(StoneSet(()), (280.0, 80.0), None, None) == "Read 0 stones, wall 280 x 80 px"
 
 
 def test_a_plan_begins_and_ends_with_what_is_read_and_written(rubble, tmp_path, run):
     """On stderr; stdout is a table."""
     out = tmp_path / "out"
-    scaled = ("--px-per-m", 5000, *WALL[2:], "--wall", "70x30")
-    ran = run("plan", rubble, *scaled, "-o", out)
+    scaled = ("plan", rubble, "--px-per-m", 5000, *WALL[2:], "--wall", SIZE, "-o", out)
+    ran = run(*scaled)
     first, odd, *_, last = ran.err.splitlines()
     assert first.startswith("drystone: Read 6 stones (largest ")
     assert "W123" in odd
     written = last.removeprefix(f"drystone: wrote to {out}: ").split()
-    assert set(written) == {path.name for path in out.iterdir()}
+    assert set(written) == {path.name for path in out.iterdir()} == FILES
     title, *rows = ran.out.splitlines()
     assert title.startswith(("complete: ", "incomplete: "))
     names = {row.split()[0] for row in rows}
     assert {"stones", "F_SF", "F_AV", "F_AH", "F_LR", "T_LEVEL", "E_FLUSH"} <= names
     assert rows[-1].split()[-1] == str(out / "report.html")
+    assert (out / "report.html").read_text(encoding="utf-8").startswith("<!")
+    for name in ("picture.png", "mechanism_left.png", "mechanism_right.png"):
+        with Image.open(out / name) as picture:
+            assert min(picture.size) > 100
     with Image.open(out / "build.gif") as film:
         assert film.n_frames == len(read_plan(out).steps) + 1
-    quiet = run("plan", rubble, *scaled, "-o", out, "--overwrite", "--json")
+    quiet = run(*scaled, "--overwrite", "--json")
     assert [line.split()[1] for line in quiet.err.splitlines()] == ["W123"]
 
 
 def test_a_long_film_is_left_to_export(tmp_path, monkeypatch):
-    result = argparse.Namespace(plan=argparse.Namespace(stone_steps=[None] * 3))
+    result = SimpleNamespace(plan=SimpleNamespace(stone_steps=[None] * 3))
     monkeypatch.setattr(planning, "FILM_STONES", 2)
     (tmp_path / "build.gif").touch()
     planning.write_film(result, tmp_path)
     assert list(tmp_path.iterdir()) == []
 
 
-def stones_of(folder):
-    return [step.stone for step in read_plan(folder).stone_steps]
+def test_a_search_goes_on_from_a_plan_without_what_is_banned(settled, rubble, tmp_path, run):
+    def planned(name, *options):
+        ran = run("plan", rubble, *EXACT, *UNTRIED, *options, "-o", tmp_path / name)
+        assert ran.code in (0, 4)
+        return read_plan(tmp_path / name), ran.err
+
+    whole, begun = read_plan(settled), ("--from", settled)
+    # The plan is the same when nothing is added; another seed would give another wall.
+    assert planned("alone", "--seed", 5)[0].steps != whole.steps
+    assert planned("from", "--seed", 5, *begun)[0].steps == whole.steps
+    planned("on", *begun)
+    on, _ = planned("on", "--from", tmp_path / "on", "--budget", 3, "--overwrite")
+    assert on.metrics.F_SF >= whole.metrics.F_SF - 0.02
+    first = whole.steps[0].stone
+    other, said = planned("other", *begun, "--ban", first)
+    assert f"W121 stones {first}" in said
+    assert first not in {step.stone for step in other.stone_steps}
+    assert first in other.unused
+    assert run("check", tmp_path / "other", "--stones", rubble).code == 0
 
 
-def test_the_plan_is_the_same_when_nothing_is_added(settled, rubble, tmp_path, run):
-    # Another seed would give another wall.
-    other = ["plan", rubble, *EXACT, *UNTRIED, "--seed", 5]
-    assert run(*other, "-o", tmp_path / "alone").code in (0, 4)
-    assert run(*other, "--from", settled, "-o", tmp_path / "out").code in (0, 4)
-    assert read_plan(tmp_path / "out").steps == read_plan(settled).steps
-    assert read_plan(tmp_path / "alone").steps != read_plan(settled).steps
+def test_the_search_is_a_row_and_its_workers_are_processes():
+    """A small wall, and three more that are searched."""
+    changes = {"search": {"budget": 4}, "settle": {"trials": 0}, "goal": {"fallen": 0.0}}
+    settings = scenes.greedy(changes)
+    searched = plan_wall(scenes.rubble(1), 100, 36, settings=settings, scale=1.0)
+    for jobs in (1, 2):
+        summary = profile_summary(searched, jobs)
+        parts = summary["parts"]
+        assert sum(parts.values()) == pytest.approx(summary["seconds"])
+        assert parts["search"] > 0 <= parts["other"]
+        lines = dict(profile_rows(summary))
+        assert lines["search"].endswith("%")  # no microseconds a candidate
+        assert lines["processes"] == f"{jobs}; the search is by the clock"
+        assert "threads" not in lines
+        for row in ("steps", "candidates"):
+            assert lines[row].endswith("(without those of the search)")
 
 
-def test_a_search_goes_on_from_a_plan_and_what_is_banned_now_is_taken_out(
-    settled, rubble, tmp_path, run
-):
-    asked = ("plan", rubble, *EXACT, *UNTRIED, "--from", settled)
-    assert run(*asked, "--budget", 3, "-o", tmp_path / "on").code in (0, 4)
-    assert read_plan(tmp_path / "on").metrics.F_SF >= read_plan(settled).metrics.F_SF - 0.02
-    first = stones_of(settled)[0]
-    ran = run(*asked, "--ban", first, "-o", tmp_path / "out")
+FILES = {
+    "plan.json", "settings.toml", "wall.png", "picture.png", "mechanism_left.png",
+    "mechanism_right.png", "report.html", "build.gif",
+}  # fmt: skip
+
+
+def test_json_has_the_summary_and_where_the_time_went(rubble, tmp_path, run):
+    ran = run("plan", rubble, *WALL, "-o", tmp_path / "json", "--json", "--profile")
+    summary = ran.json()
+    profile, plan = summary.pop("profile"), read_plan(summary["plan"])
+    assert (summary["placed"], summary["stones"]) == (len(plan.stone_steps), 6)
+    assert (summary["unused"], summary["stopped"]) == (list(plan.unused), plan.stopped)
+    assert summary["F_LR"] == plan.metrics.F_LR
+    assert summary["seconds"] > 0
+    assert (summary["status"], ran.code) in {("complete", 0), ("incomplete", 4)}
+    parts = profile["parts"]
+    assert list(parts) == [*PARTS, "search", "other"]
+    assert all(parts[part] > 0 for part in PARTS if part != "metrics")
+    # Only methods that go back look at metrics while planning.
+    assert parts["metrics"] == parts["search"] == 0
+    assert sum(parts.values()) == pytest.approx(profile["seconds"])
+    assert profile["candidates"] >= profile["steps"] >= 5
+    assert 0 < profile["longest_step"] <= profile["seconds"]
+    out = run("plan", rubble, *WALL, "--profile", "--jobs", "2", "-o", tmp_path / "table").out
+    for said in ("where the time went", "limit analysis", "2; parts are summed over them"):
+        assert said in out
+    assert "search" not in out
+
+
+def test_a_folder_with_files_is_refused_and_not_touched(finished, rubble, tmp_path, run):
+    diary, plan, asked = tmp_path / "diary.txt", tmp_path / "plan.json", ("plan", rubble, *WALL)
+    diary.write_text("mine", encoding="utf-8")
+    plan.write_text("also mine", encoding="utf-8")
+    run(*asked, "-o", tmp_path).refused("E129", "--overwrite")
+    assert plan.read_text(encoding="utf-8") == "also mine"
+    assert set(tmp_path.iterdir()) == {diary, plan}
+    # Another seed gives another wall.
+    assert run(*asked, "-o", tmp_path, "--overwrite", "--seed", 2).code in (0, 4)
+    assert diary.read_text(encoding="utf-8") == "mine"
+    assert (tmp_path / "wall.png").read_bytes() != (finished / "wall.png").read_bytes()
+    for place in (diary, diary / "below"):
+        ran = run(*asked, "-o", place, "--overwrite")
+        assert "is a file, not a folder. Choose another folder with -o" in ran.err
+
+
+def test_stones_too_large(rubble, tmp_path, run):
+    out = tmp_path / "out"
+    small = ("--wall", "60x15", "--scale", "1", "--method", "paper", "-o", out, "--overwrite")
+    ran = run("plan", rubble, *small, "--skip-too-large", "--json")
     assert ran.code in (0, 4)
-    assert f"W121 stones {first}" in ran.err
-    assert first not in stones_of(tmp_path / "out")
-    assert first in read_plan(tmp_path / "out").unused
-    assert run("check", tmp_path / "out", "--stones", rubble).code == 0
-
-
-def test_a_pinned_stone_that_is_missing_is_said(rubble, tmp_path, run):
-    every = [str(i) for i in range(1, 7)]
-    small = ["--wall", "60x20", "--scale", "1", "--method", "paper", "--skip-too-large"]
-    ran = run("plan", rubble, *small, "--pin", *every, "-o", tmp_path / "out")
+    plan = read_plan(out)
+    said = run("plan", rubble, *small).err.splitlines()[-1]
+    named = said.split("stones ")[1].split(" fit", maxsplit=1)[0].split(", ")
+    assert set() < {int(text) for text in named} <= set(plan.unused)
+    assert ran.json()["unused"] == list(plan.unused)
+    assert run("check", out, "--stones", rubble).code == 0
+    # One that is pinned is missed.
+    lower = ("--wall", "60x20", *small[2:], "--skip-too-large", "--pin", *range(1, 7))
+    ran = run("plan", rubble, *lower)
     assert (ran.code, "W120 pinned stones found no place" in ran.err) == (4, True)
     first = ran.out.splitlines()[0]
     assert first.startswith("incomplete: ")
     assert first.endswith("; stones that are pinned are missing")
 
 
-@pytest.fixture(scope="module")
-def searched():
-    """A small wall, and three more that are searched."""
-    changes = {"search": {"budget": 4}, "settle": {"trials": 0}, "goal": {"fallen": 0.0}}
-    settings = scenes.greedy(changes)
-    return plan_wall(scenes.rubble(1), 100, 36, settings=settings, scale=1.0)
+def test_ids_above_16_bits_survive(tmp_path, run):
+    labels, out, ids = np.zeros((40, 70), np.uint32), tmp_path / "out", {3, 300, 70_000}
+    for place, stone_id in enumerate(sorted(ids)):
+        labels[5 + 10 * place : 13 + 10 * place, 5 : 45 + 5 * place] = stone_id
+    large, small = tmp_path / "stones.tif", tmp_path / "small.png"
+    write_labels(labels, large)
+    asked = ("--wall", "70x40", "--scale", "1", "--method", "paper", "-o", out)
+    assert run("plan", large, *asked).code in (0, 4)
+    assert not (out / "wall.png").exists()
+    wall, plan = tifffile.imread(out / "wall.tif"), read_plan(out)
+    assert wall.dtype == np.uint32
+    assert {step.stone for step in plan.stone_steps} == ids
+    wedges = {step.id for step in plan.wedge_steps}
+    assert set(np.unique(wall).tolist()) - {0} == ids | wedges
+    assert run("check", out, "--stones", large).code == 0
+    # A later plan of smaller ids into the same folder leaves no wall of the earlier one.
+    write_labels(np.where(labels == 70_000, 7, labels), small)
+    run("plan", small, *asked, "--overwrite")
+    assert [(out / name).exists() for name in ("wall.png", "wall.tif")] == [True, False]
 
 
-@pytest.mark.parametrize("jobs", [1, 2])
-def test_the_search_is_a_row_and_its_workers_are_processes(searched, jobs):
-    summary = profile_summary(searched, jobs)
-    parts = summary["parts"]
-    assert sum(parts.values()) == pytest.approx(summary["seconds"])
-    assert parts["search"] > 0
-    assert parts["other"] >= 0
-    lines = dict(profile_rows(summary))
-    assert lines["search"].endswith("%")  # no microseconds a candidate
-    assert lines["processes"] == f"{jobs}; the search is by the clock"
-    assert "threads" not in lines
-    assert lines["steps"].endswith("(without those of the search)")
-    assert lines["candidates"].endswith("(without those of the search)")
+def test_a_wall_is_complete_or_not(bricks, tmp_path, run):
+    asked = ("plan", bricks, "--method", "paper", "--json", "-o", tmp_path, "--overwrite")
+    filled = run(*asked, "--wall", "60x20")
+    assert (filled.code, filled.json()["F_SF"], filled.json()["unused"]) == (0, 1.0, [])
+    # A scale is chosen: the stones are smaller than the planner likes.
+    assert filled.json()["working_scale"] == read_plan(tmp_path).working_scale == 1.0
+    ran = run(*asked, "--wall", "300x80")
+    summary = ran.json()
+    assert (ran.code, summary["status"], summary["placed"]) == (4, "incomplete", 6)
+    assert re.match(r"the top is at 0\.\d{3} of the wall's height", summary["shortfall"])
+    assert run("check", tmp_path, "--stones", bricks).code == 0
+
+
+SEARCH = ("--wall", SIZE, "--scale", "1", "--budget", "3", "--seed", "1", *UNTRIED)
+
+
+def test_walls_to_choose_from(rubble, tmp_path, run):
+    out = tmp_path / "out"
+    choice = out / "pareto"
+    ran = run("plan", rubble, *SEARCH, "--pareto", "--json", "--profile", "-o", out)
+    assert ran.code in (0, 4)
+    summary = ran.json()
+    walls, metrics = summary["pareto"], set(PlanMetrics.__dataclass_fields__)
+    found = keys(summary, "profile").union(*walls)
+    assert found - metrics == listed("plan") - metrics  # "the metrics" on the page
+    assert metrics - found == {"alpha_left_coulomb", "alpha_right_coulomb"}
+    assert len(walls) > 1
+    names = [f"{k:02}" for k in range(1, len(walls) + 1)]
+    assert [one["plan"] for one in walls] == [str(choice / k / "plan.json") for k in names]
+    assert (choice / "01" / "plan.json").read_bytes() == (out / "plan.json").read_bytes()
+    for one in walls:
+        plan = read_plan(Path(one["plan"]))
+        assert one["placed"] == len(plan.stone_steps)
+        for name in ("F_SF", "F_AV", "F_AH", "F_LR"):
+            assert one[name] == getattr(plan.metrics, name)
+        assert run("check", one["plan"], "--stones", rubble).code == 0
+    assert (out / "pareto.png").read_bytes().startswith(b"\x89PNG")
+
+    # Fewer walls than before leave none of an earlier search.
+    mine = choice / "02" / "mine.txt"
+    mine.write_text("kept")
+    few = run("plan", rubble, *EXACT, *UNTRIED, "--pareto", "--overwrite", "-o", out)
+    header, row = few.out.splitlines()[-2:]
+    assert header.split() == ["F_SF", "F_AV", "F_AH", "F_LR", "stones"]
+    metrics = read_plan(out).metrics
+    assert row.split()[:3] == ["pareto/01", f"{metrics.F_SF:.3f}", f"{metrics.F_AV:.1f}"]
+    assert sorted(path.name for path in choice.iterdir()) == ["01", "02"]
+    assert list(mine.parent.iterdir()) == [mine]
+    # Walls to choose from do not outlive their search.
+    mine.unlink()
+    assert run("plan", rubble, *WALL, "--overwrite", "-o", out).code in (0, 4)
+    assert not (out / "pareto.png").exists()
+    assert not (choice / "01").exists()
+
+
+@pytest.mark.parametrize(
+    ("wall", "text"),
+    [(SIZE, "(the maximum for these stones is {:.3f})"), ("60x20", "(1 is a full wall)")],
+)
+def test_the_bound_is_printed(wall, text, rubble, tmp_path, run):
+    options = ("plan", rubble, "--wall", wall, *WALL[2:], "--skip-too-large", "-o")
+    lines = run(*options, tmp_path / "a").out.splitlines()
+    (line,) = [line for line in lines if line.startswith("F_SF")]
+    summary = run(*options, tmp_path / "b", "--json").json()
+    assert text.format(summary["F_SF_bound"]) in line
+    assert summary["F_SF"] <= summary["F_SF_bound"]
+
+
+def test_a_terminal_sees_stones_and_walls(rubble, tmp_path, run, monkeypatch):
+    plan = ("plan", rubble, "--overwrite", "-o", tmp_path / "out")
+    monkeypatch.setenv("FORCE_COLOR", "1")  # the terminal that pytest does not have
+    ran = run(*plan, *EXACT, *UNTRIED, "--budget", 2)
+    assert "filling" in ran.err
+    assert "walls; best: " in ran.err
+    assert "filling 0" not in ran.out
+    for option in ("--quiet", "--json"):
+        assert run(*plan, *WALL, option).err == ""
+
+
+@pytest.mark.parametrize("command", ["check", "measure", "craft"])
+def test_what_takes_long_says_so(command, settled, rubble, run, monkeypatch):
+    """Nothing is shown of what is soon done; the bar comes when the time is up."""
+
+    def timer(due):
+        """Make timers whose time is up at once, or never."""
+        made = lambda _, show: SimpleNamespace(  # noqa: E731
+            start=show if due else lambda: None, cancel=lambda: None, join=lambda: None
+        )
+        monkeypatch.setattr(progress, "Timer", made)
+
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    asked = (command, settled, *(("--stones", rubble) if command == "check" else ()))
+    timer(due=False)
+    assert run(*asked).err == ""
+    timer(due=True)
+    ran = run(*asked)
+    assert "the wall" in ran.err or "every step" in ran.err
+    assert run(*asked, "--json").err == ""

@@ -24,52 +24,38 @@ PHOTO = "segment {photo} -o {out}"
 def places(rubble, bricks, finished, settled, tmp_path_factory):
     """Files by name: good ones, and a folder of things that are no stones, walls or plans."""
     folder = tmp_path_factory.mktemp("inputs")
-    (folder / "empty").mkdir()
-    with Image.open(rubble) as picture:
-        pixels = np.asarray(picture)
-    Image.fromarray((pixels * 30).astype(np.uint8)).save(folder / "labels.jpg")
-    box = [[0, 0], [1, 0], [1, 4], [0, 4]]
-    fixed = {"id": 1, "polygon": box, "fixed": True}
-    for name, content in {
-        "other": {"a": 1},
-        "overlap": {"blocks_xywh": [[0, 0, 2, 2], [1, 1, 2, 2]]},
-        "tower": {"blocks": [{"id": 1, "polygon": box}], "mu": 0.58},
-        "still": {"blocks": [fixed]},
+    block = {"id": 1, "polygon": [[0, 0], [1, 0], [1, 4], [0, 4]]}
+    for name, text in {
+        "other": '{"a": 1}',
+        "tower": json.dumps({"blocks": [block], "mu": 0.58}),
+        "still": json.dumps({"blocks": [{**block, "fixed": True}]}),
+        "cut": '{"schema": "drystone-',
+        "deep": "[" * 100_000,
     }.items():
-        (folder / f"{name}.json").write_text(json.dumps(content), encoding="utf-8")
-    (folder / "cut.json").write_text('{"schema": "drystone-', encoding="utf-8")
-    (folder / "deep.json").write_text("[" * 100_000, encoding="utf-8")
-    (folder / "text.png").write_text("no picture", encoding="utf-8")
+        (folder / f"{name}.json").write_text(text, encoding="utf-8")
     write_labels(painted(stack_bond()), folder / "stack.png")
-    picture = np.full((120, 213, 3), 90, np.uint8)
-    Image.fromarray(picture).save(folder / "photo.png")
+    Image.fromarray(np.full((120, 213, 3), 90, np.uint8)).save(folder / "photo.png")
     mask = np.zeros((120, 213), np.uint8)
     mask[20:50, 20:80] = mask[60:100, 100:160] = 255
     Image.fromarray(mask).save(folder / "pile.png")
     given = {"rubble": rubble, "bricks": bricks, "finished": finished, "settled": settled}
-    names = {"tower": "tower.json", "stack": "stack.png", "photo": "photo.png", "pile": "pile.png"}
-    return given | {"in": folder} | {name: folder / file for name, file in names.items()}
+    names = ("tower.json", "stack.png", "photo.png", "pile.png")
+    return given | {"in": folder} | {name.partition(".")[0]: folder / name for name in names}
 
 
 CASES = [
     # What is read is something else.
     ("plan {in}/nowhere.png --wall 9x9 -o {out}", 3, "E100", "nowhere"),
-    ("plan {in}/empty --wall 9x9 -o {out}", 3, "E111", "empty"),
-    ("plan {in}/labels.jpg --wall 9x9 -o {out}", 3, "E101", "labels"),
-    ("plan {in}/text.png --wall 9x9 -o {out}", 3, "E107", "text"),
     ("analyse {in}/nowhere.json", 3, "E132", "nowhere"),
     ("analyse {in}/cut.json", 3, "E132", "cut"),
     ("analyse {in}/deep.json", 3, "E132", "deep"),
     ("analyse {in}/other.json", 3, "E113", "other"),
-    ("analyse {in}/overlap.json", 3, "E304", ""),
     ("analyse {in}/still.json", 3, "E303", "no free block"),
     ("measure {in}/other.json", 3, "E113", "A wall is a plan.json, a block model (blocks), a"),
     ("measure {tower}", 2, "E134", ""),
     ("measure {finished} --background 255", 2, "E118", ""),
     ("measure {finished} --mu 1e308", 3, "E302", "mu"),
     ("check {in}/nowhere.json", 3, "E202", "nowhere"),
-    ("check {in}/cut.json", 3, "E203", "cut"),
-    ("check {in}/other.json", 3, "E204", "other"),
     ("check {finished} --stones {in}/nowhere.png", 3, "E100", "nowhere"),
     ("export {in}/nowhere --to csv", 3, "E132", "or its folder"),
     # Options that nobody can mean.
@@ -97,10 +83,8 @@ CASES = [
     ("plan {rubble} --wall 1mx.4m --ruler 0,0,90000,0=1m -o {out}", 2, "E138", "outside"),
     ("plan {pile} --wall 1mx.4m --ruler 20,30,2000,30=1m -o {out}", 2, "E138", "point 2000,30 is"),
     (f"{SMALL} --wall 15x8 --scale 1", 2, "E120", "--skip-too-large"),
-    (f"{SMALL} --wall 60x20 --scale .02", 2, "E121", ""),
     (f"{SMALL} --wall 15x8 --scale 1 --skip-too-large", 2, "E126", "none of the 6 stones"),
     (f"{SMALL} --wall 60x20 --scale 1 --ban 1 2 3 4 5 6", 2, "E126", "or ban fewer stones."),
-    (f"{PLAN} --ban 99", 2, "E145", ""),
     (f"{PLAN} --ban 2 3 --pin 3", 2, "E123", "--ban and --pin: ban and pin name the same stones"),
     # Plans that a search cannot begin with.
     (f"{FROM} --wall 80x30", 2, "E144", "of another wall (70x30 px, not 80x30)."),
@@ -116,13 +100,11 @@ CASES = [
     ("generate rubble -o {out}/x.png --count 0", 2, "E138", "--count: '0'"),
     (f"{BRICKS} --set cuont=1", 2, "E123", "Did you mean `count`?"),
     (f"{BRICKS} --set height_px", 2, "E135", "Known: count"),
-    (f"{BRICKS} --set height_px=-4", 2, "E130", ""),
     ("generate brick -o {out}/x.jpg", 2, "E139", ""),
     (f"{SHEET} --size 100mm", 2, "E174", "fit on A4"),
     (f"{SHEET} --count 3", 2, "E174", ""),
     (f"{SHEET} --ids 2", 2, "E174", ""),
     ("markers -o {out}/sheet.png", 2, "E139", ""),
-    (f"{PHOTO} --aruco A4:75mm", 3, "E170", ""),
     (f"{PHOTO} --aruco 50mm --px-per-m 100", 2, "E138", ""),
     (f"{PHOTO} --marker-ids 1", 2, "E138", "--marker-ids"),
     (f"{PHOTO} --check-line 97mm", 2, "E138", "--check-line"),
@@ -132,7 +114,6 @@ CASES = [
     ("analyse {tower} --dead 1:0,0", 2, "E138", ""),
     ("analyse {tower} --load points", 2, "E138", ""),
     ("analyse {tower} --load gravity --tilt 3", 2, "E138", ""),
-    ("analyse {tower} --dead 9@0,0:1,0", 3, "E306", ""),
     ("analyse {tower} --live 1@0,0:1,0", 2, "E138", ""),
     ("analyse {tower} --settle 1", 3, "E306", ""),
     ("analyse {tower} --mu .8:.4", 2, "E138", ""),
@@ -144,8 +125,6 @@ CASES = [
     ("analyse {tower} --px-per-m 200 --ruler 0,0,1,0=1m", 2, "E138", ""),
     ("analyse {settled} --close-gaps 1", 2, "E138", "this plan is one of outlines"),
     ("craft {stack} --limit laps", 2, "E138", ""),
-    ("craft {stack} --limit lapse=.1:.3", 2, "E190", ""),
-    ("craft {stack} --wedges 77", 2, "E191", ""),
     ("craft {finished} --wedges 3", 2, "E138", "--wedges: a plan says itself what its wedges are."),
     ("measure {stack} --mu -1", 2, "E138", "--mu"),
     ("measure {stack} --px-per-m 100", 2, "E138", "--px-per-m: would do nothing"),
@@ -182,9 +161,11 @@ def test_what_cannot_be_is_refused(line, exit_code, code, said, places, tmp_path
     assert not [path for path in out.rglob("*") if path.is_file()]
 
 
-@pytest.mark.parametrize(
-    ("text", "code", "said"),
-    [
+def test_settings_that_cannot_be_are_blamed_on_their_file(rubble, tmp_path, run):
+    toml, out = tmp_path / "mine.toml", tmp_path / "out"
+    wall = ("--wall", "70x30", "--scale", "1", "--geometry", "raster")
+    for text, code, said in (
+        (None, "E128", "Give a TOML file, such as the settings.toml"),
         ("mu = -1.0", "E123", "{}: mu must be in (0, 1e+06], not -1.0. Change mu."),
         ("bugdet = 1", "E123", "{}: there is no setting 'bugdet'. Did you mean `search.budget`?"),
         ("[stop]\nfilling = 2.0", "E123", "{} [stop]: filling must be in (0, 1]"),
@@ -196,17 +177,11 @@ def test_what_cannot_be_is_refused(line, exit_code, code, said, places, tmp_path
         ("mu = ", "E128", "{}: is not valid TOML"),
         ("mu = " + "[" * 100_000, "E128", ""),
         ("mu = 0.5 #" + " " * 1_000_000, "E128", ""),
-        (None, "E128", "Give a TOML file, such as the settings.toml"),
-    ],
-    ids=lambda value: str(value)[:20],
-)
-def test_settings_that_cannot_be_are_blamed_on_their_file(text, code, said, rubble, tmp_path, run):
-    toml, out = tmp_path / "mine.toml", tmp_path / "out"
-    if text is not None:
-        toml.write_text(text, encoding="utf-8")
-    wall = ("--wall", "70x30", "--scale", "1", "--geometry", "raster")
-    ran = run("plan", rubble, *wall, "--settings", toml, "-o", out)
-    assert (ran.code, ran.err.count("\n")) == (3 if code == "E128" else 2, 1)
-    assert ran.err.startswith(f"drystone: {code} ")
-    assert said.format(toml) in ran.err
-    assert not out.exists()
+    ):
+        if text is not None:
+            toml.write_text(text, encoding="utf-8")
+        ran = run("plan", rubble, *wall, "--settings", toml, "-o", out)
+        assert (ran.code, ran.err.count("\n")) == (3 if code == "E128" else 2, 1)
+        assert ran.err.startswith(f"drystone: {code} ")
+        assert said.format(toml) in ran.err
+        assert not out.exists()

@@ -1,13 +1,20 @@
+"""Photographs: `drystone segment`, and sheets of `drystone markers` that give them a scale."""
+
 import json
 import re
 from dataclasses import replace
 
 import numpy as np
+import pypdfium2
 import pytest
 from PIL import Image
 from scipy import ndimage
 
-from drystone.cli import main
+from drystone.cli.commands.segment import WRITTEN, scale_from
+from drystone.cli.parser import build_parser
+from drystone.photo.layout import parse_layout
+from drystone.photo.markers import find_markers
+from drystone.photo.scale import scale_and_view
 from drystone_lab.photographs.layout import PhotoLevel
 from drystone_lab.photographs.scene import photograph
 from drystone_lab.photos import overlaps
@@ -17,38 +24,19 @@ SHEET = PhotoLevel(
     shadow=0.35, ground="plywood", rocks=("granite", "basalt"), turn_deg=5.0,
 )  # fmt: skip
 BARE = replace(
-    SHEET,
-    markers="none",
-    count=4,
-    width_px=420,
-    height_px=320,
-    tilt_deg=0.0,
-    turn_deg=0.0,
+    SHEET, markers="none", count=4, width_px=420, height_px=320, tilt_deg=0.0, turn_deg=0.0,
     shadow=0.0,
-)
+)  # fmt: skip
 
 
 @pytest.fixture(scope="module")
-def sheet():
-    return photograph(SHEET)
+def bare(tmp_path_factory):
+    """A photograph without markers."""
+    return saved(photograph(BARE), tmp_path_factory.mktemp("bare"))
 
 
-@pytest.fixture(scope="module")
-def bare():
-    return photograph(BARE)
-
-
-@pytest.fixture(scope="module")
-def found(bare, tmp_path_factory):
-    """The folder of the stones of the bare photograph; not to be changed."""
-    folder = tmp_path_factory.mktemp("found")
-    asked = ["--px-per-m", "800", "-o", str(folder / "out")]
-    assert main(["segment", str(saved(bare, folder)), *asked]) == 0
-    return folder / "out"
-
-
-def saved(made, tmp_path, name="photo-1.jpg"):
-    path = tmp_path / name
+def saved(made, folder):
+    path = folder / "photo-1.jpg"
     path.write_bytes(made.jpeg)
     return path
 
@@ -58,67 +46,51 @@ def opened(path):
         return np.array(picture)
 
 
-def test_markers_give_scale_and_view_and_are_no_stones_of_a_plan(run, tmp_path, sheet):
-    out = tmp_path / "out"
+def test_markers_give_scale_and_view_and_are_no_stones_of_a_plan(run, tmp_path):
+    sheet, out, wall = photograph(SHEET), tmp_path / "out", tmp_path / "wall"
     ran = run("segment", saved(sheet, tmp_path), "--aruco", "A4:75mm", "-o", out, "--json")
     assert ran.code == 0
-    said = ran.json()
-    beside = json.loads((out / "stones.json").read_text())
+    said, beside = ran.json(), json.loads((out / "stones.json").read_text())
     labels = opened(out / "stones.png")
     assert labels.dtype == np.uint16
     assert (beside["width_px"], beside["height_px"]) == labels.shape[::-1]
     assert opened(out / "photo.jpg").shape == (*labels.shape, 3)
     assert opened(out / "preview.png").shape[1] > 600
     assert [marker["id"] for marker in beside["markers"]] == [0, 1, 2, 3]
-    assert said["markers"] == beside["markers"]
+    for name in ("markers", "px_per_m"):
+        assert said[name] == beside[name]
     for marker in beside["markers"]:
         sides = np.hypot(*np.diff(marker["corners_m"] + marker["corners_m"][:1], axis=0).T)
         assert sides == pytest.approx(0.075, rel=0.01)
-    assert beside["px_per_m"] == said["px_per_m"]
     true = np.sort(np.bincount(sheet.truth.ravel())[1:]) / SHEET.px_per_m**2
     found = np.sort([stone["area_px"] for stone in said["sizes"]]) / said["px_per_m"] ** 2
     assert found == pytest.approx(true, rel=0.06)
     truth = sheet.truth_in(np.linalg.inv(np.array(beside["from_photo"])), labels.shape)
     assert overlaps(truth, labels).max(axis=1).min() > 0.9
-    wall = tmp_path / "wall"
     ran = quickly_planned(run, out / "stones.png", wall)
     assert ran.code in (0, 4), ran.err
     assert (wall / "photo.jpg").read_bytes() == (out / "photo.jpg").read_bytes()
     plan = json.loads((wall / "plan.json").read_text())
     assert plan["steps"]
     # What a robot must know of the photograph goes along, to the poses too.
-    assert plan["source"]["photograph"]["name"] == "photo-1.jpg"
+    of_photo = plan["source"]["photograph"]
+    assert of_photo["name"] == "photo-1.jpg"
     assert run("export", wall, "--to", "poses").code == 0
     poses = json.loads((wall / "poses.json").read_text())
     for name in ("markers", "P_from_marker"):
-        assert poses[name] == plan["source"]["photograph"][name] == beside[name]
+        assert poses[name] == of_photo[name] == beside[name]
     assert "photo-1.jpg" in (wall / "report.html").read_text("utf-8").split("<h1>")[1]
 
 
 def quickly_planned(run, stones, out, *more):
-    return run(
-        "plan", stones, "--wall", "0.8mx0.4m", "-o", out, "--method", "paper", "--scale", "0.15",
-        "--quiet", *more,
-    )  # fmt: skip
-
-
-def test_a_plan_knows_its_copy_and_refuses_before_it_replaces_another(run, tmp_path, found):
-    wall, mine = tmp_path / "wall", tmp_path / "mine"
-    for _ in range(2):
-        assert quickly_planned(run, found, wall, "--overwrite").code in (0, 4)
-    assert json.loads((wall / "plan.json").read_text())["source"]["photo"]["name"] == "photo.jpg"
-    mine.mkdir()
-    (mine / "photo.jpg").write_bytes(b"mine")
-    quickly_planned(run, found, mine, "--overwrite").refused("E129")
-    assert [path.name for path in mine.iterdir()] == ["photo.jpg"]
-    assert (mine / "photo.jpg").read_bytes() == b"mine"
+    size = ("--wall", "0.8mx0.4m", "--method", "paper", "--scale", ".15")
+    return run("plan", stones, *size, "-o", out, *more)
 
 
 def test_a_damaged_photograph_is_refused_before_the_search(run, tmp_path, bare):
     out, wall = tmp_path / "out", tmp_path / "wall"
-    ran = run("segment", saved(bare, tmp_path), "-o", out)
-    assert "not known" in ran.out
-    assert "No scale given" in ran.err
+    ran = run("segment", bare, "-o", out)
+    assert ("not known" in ran.out, "No scale given" in ran.err) == (True, True)
     assert json.loads((out / "stones.json").read_text())["px_per_m"] is None
     (out / "photo.jpg").write_bytes(b"no picture")
     ran = run("plan", out, "--wall", "640x320", "-o", wall, "--method", "paper", "--scale", ".15")
@@ -127,69 +99,156 @@ def test_a_damaged_photograph_is_refused_before_the_search(run, tmp_path, bare):
 
 
 def test_one_file_has_one_median_stone_and_its_photograph(run, tmp_path, bare):
-    out = tmp_path / "out"
-    out.mkdir()
-    (out / "note.txt").write_text("mine")
-    asked = ("segment", saved(bare, tmp_path), "--px-per-m", 800, "-o", out)
+    out, wall, mine = (tmp_path / name for name in ("out", "wall", "mine"))
+    for folder, name in ((out, "note.txt"), (mine, "photo.jpg")):
+        folder.mkdir()
+        (folder / name).write_text("mine")
+    asked = ("segment", bare, "--px-per-m", 800, "-o", out)
     assert "E129" in run(*asked).err
     found = run(*asked, "--overwrite").out
     (median,) = re.findall(r"median stone +(\S+ x \S+) cm", found)
     assert f" {median} cm (" in run("stones", out / "stones.png").out
+    # A plan knows its copy, and refuses before it replaces another.
+    for _ in range(2):
+        assert quickly_planned(run, out, wall, "--overwrite").code in (0, 4)
+    assert json.loads((wall / "plan.json").read_text())["source"]["photo"]["name"] == "photo.jpg"
+    quickly_planned(run, out, mine, "--overwrite").refused("E129")
+    assert [(path.name, path.read_text()) for path in mine.iterdir()] == [("photo.jpg", "mine")]
+    # In the folder of the stones it keeps their photograph.
     photo = (out / "photo.jpg").read_bytes()
-    # A plan in the folder of the stones keeps their photograph.
-    ran = run("plan", out, "--wall", "0.8mx0.4m", "-o", out, "--method", "paper", "--scale", ".15",
-              "--overwrite")  # fmt: skip
+    ran = quickly_planned(run, out, out, "--overwrite")
     assert f"median {median} cm)" in ran.err
     assert ((out / "photo.jpg").read_bytes(), (out / "note.txt").read_text()) == (photo, "mine")
     assert "data:image/jpeg" in (out / "report.html").read_text(encoding="utf-8")
     assert "photo" not in json.loads((out / "plan.json").read_text())["source"]
 
 
-def two_stones(path, colour, *more):
-    """Two stones on blue cloth, and something more of a colour, saved as a picture."""
-    picture = np.full((300, 400, 3), (60, 90, 150), np.uint8)
-    picture[120:200, 60:160] = picture[130:210, 220:330] = (160, 150, 140)
-    for window in more:
-        picture[window] = colour
-    Image.fromarray(picture).save(path)
-
-
-def test_a_stone_along_the_ruler_is_in_doubt(run, tmp_path):
-    two_stones(tmp_path / "photo.png", (230, 220, 120), np.s_[50:62, 50:350])
-    said = "W179 unusual: stone 1 lies along --ruler and may be the ruler"
-    for row, doubted in ((49, True), (80, False)):
-        asked = ("segment", tmp_path / "photo.png", "--ruler", f"55,{row},345,{row}=290mm")
-        out = run(*asked, "-o", tmp_path / str(row)).out
-        assert (said in out, "1000.0 px a metre" in out) == (doubted, True)
-
-
 def test_what_is_no_photograph_of_stones_is_doubtful_first_and_by_its_exit_code(run, tmp_path):
-    rng = np.random.default_rng(1)
+    bed, out, rng = tmp_path / "bed.png", tmp_path / "out", np.random.default_rng(1)
     grains = ndimage.gaussian_filter(rng.standard_normal((300, 400)), 3)
     picture = np.clip(120 + 40 * grains / grains.std(), 0, 255)[..., None].repeat(3, 2)
     rows, cols = np.indices((300, 400))
     picture[np.hypot(rows - 150, cols - 200) < 24] = 170, 70, 50
-    Image.fromarray(picture.astype(np.uint8)).save(tmp_path / "bed.png")
-    ran = run("segment", tmp_path / "bed.png", "-o", tmp_path / "out")
+    Image.fromarray(picture.astype(np.uint8)).save(bed)
+    ran = run("segment", bed, "-o", out)
     assert ran.code == 5
     assert ran.out.startswith("doubtful: the ground is not plain")
-    assert {one.name for one in (tmp_path / "out").iterdir()} == {
-        "stones.png", "stones.json", "photo.jpg", "preview.png", "outlines.html",
-    }  # fmt: skip
-    (reason, *_) = json.loads((tmp_path / "out" / "stones.json").read_text())["doubtful"]
+    assert {path.name for path in out.iterdir()} == set(WRITTEN)
+    (reason, *_) = json.loads((out / "stones.json").read_text())["doubtful"]
     assert reason in ran.out
-    said = run("segment", tmp_path / "bed.png", "-o", tmp_path / "json", "--json")
+    said = run("segment", bed, "-o", tmp_path / "json", "--json")
     assert (said.code, said.json()["doubtful"][0]) == (5, reason)
 
 
-def test_what_was_left_out_has_a_place_and_a_reason(run, tmp_path):
-    speck, cut = np.s_[20:26, 100:106], np.s_[100:180, 380:400]
-    two_stones(tmp_path / "photo.png", (160, 150, 140), speck, cut)
-    ran = run("segment", tmp_path / "photo.png", "-o", tmp_path / "out")
-    assert (ran.code, "2 stones" in ran.out) == (0, True)
-    left_out = json.loads((tmp_path / "out" / "stones.json").read_text())["left_out"]
-    assert [one["why"] for one in left_out] == [
-        "at the edge of the photograph or cut by it",
-        "too small (--min-area)",
+def test_what_is_in_doubt_or_left_out_has_a_place_and_a_reason(run, tmp_path):
+    """Two stones on blue cloth, a ruler, a speck, and a stone that is cut by the edge."""
+    photo, out = tmp_path / "photo.png", tmp_path / "out"
+    picture = np.full((300, 400, 3), (60, 90, 150), np.uint8)
+    for window in (np.s_[120:200, 60:160], np.s_[130:210, 220:330], np.s_[20:26, 100:106]):
+        picture[window] = picture[100:180, 380:400] = (160, 150, 140)
+    picture[50:62, 50:350] = (230, 220, 120)
+    Image.fromarray(picture).save(photo)
+    said = "W179 unusual: stone 1 lies along --ruler and may be the ruler"
+    for row, doubted in ((49, True), (80, False)):
+        asked = ("segment", photo, "--ruler", f"55,{row},345,{row}=290mm", "--overwrite")
+        ran = run(*asked, "-o", out)
+        assert (ran.code, said in ran.out, "3 stones" in ran.out) == (0, doubted, True)
+        assert "1000.0 px a metre" in ran.out
+    left_out = json.loads((out / "stones.json").read_text())["left_out"]
+    assert [(one["why"], one["x_px"]) for one in left_out] == [
+        ("at the edge of the photograph or cut by it", pytest.approx(390, abs=1)),
+        ("too small (--min-area)", pytest.approx(103, abs=1)),
     ]
-    assert [one["x_px"] for one in left_out] == pytest.approx([390, 103], abs=1)
+
+
+DPI = 200
+PX_PER_MM = DPI / 25.4
+
+
+def rendered(path, page=0, dpi=DPI):
+    """A page as a camera sees it, its size in mm, and its text."""
+    with pypdfium2.PdfDocument(path) as document:
+        one = document[page]
+        size_mm = np.array(one.get_size()) / 72 * 25.4
+        picture = one.render(scale=dpi / 72).to_numpy()[..., :3]
+        text = one.get_textpage().get_text_range()
+    # PDFium mixes black and white by area in values, a lens in light.
+    light = picture / 255.0
+    values = np.where(light > 0.0031308, 1.055 * light ** (1 / 2.4) - 0.055, 12.92 * light)
+    return np.ascontiguousarray(np.rint(255.0 * values).astype(np.uint8)), size_mm, text
+
+
+@pytest.mark.parametrize(
+    ("options", "layout", "page_mm"),
+    [
+        ([], "A4:50mm", (210.0, 297.0)),
+        (["--dictionary", "apriltag", "--page", "letter", "--size", "6cm"], "letter:60mm",
+         (215.9, 279.4)),
+    ],
+)  # fmt: skip
+def test_a_printed_sheet_measures_what_it_says(run, tmp_path, options, layout, page_mm):
+    path = tmp_path / "sheet.pdf"
+    told = run("markers", "-o", path, *options)
+    assert told.code == 0
+    last = f"Print at 100 %. Then: drystone segment PHOTO --aruco {layout} -o DIR"
+    assert told.out.splitlines()[-1] == last
+    picture, size_mm, text = rendered(path, dpi=300)
+    assert size_mm == pytest.approx(page_mm, abs=0.01)
+    known = parse_layout(layout)
+    found = find_markers(picture)
+    assert [one.id for one in found] == [0, 1, 2, 3]
+    # A page is stretched to whole px when it is rendered.
+    px_per_mm = np.array(picture.shape[1::-1]) / page_mm
+    assert px_per_mm == pytest.approx(300 / 25.4, rel=1e-3)
+    for one in found:
+        flat_mm = known.corners_m(one.id) * 1000
+        # Where a printer puts it, to a tenth of a millimetre: sizes and distances are then right.
+        assert one.corners_px / px_per_mm == pytest.approx(flat_mm, abs=0.03)
+        assert f"marker {one.id}" in text
+    height, width = picture.shape[:2]
+    view = scale_and_view(found, known, (width, height))
+    assert view.px_per_m == pytest.approx(px_per_mm.mean() * 1000, rel=3e-4)
+    corners = known.corners_m(2)[2] * 1000 - known.corners_m(0)[0] * 1000
+    assert f"{corners[0]:.1f} mm across, {corners[1]:.1f} mm down" in text
+    assert "100 %" in text
+
+
+def test_markers_are_vectors_without_hairlines_beside_a_line_of_100_mm(run, tmp_path):
+    path = tmp_path / "sheet.pdf"
+    assert run("markers", "-o", path, "--count", 8, "--ids", 4).code == 0
+    assert [one.id for one in find_markers(rendered(path, 1)[0])] == [8, 9, 10, 11]
+    data = path.read_bytes()
+    assert not any(word in data for word in (b"/Subtype /Image", b"CreationDate"))
+    picture, _, text = rendered(path)
+    # The black border of the first marker, five sixths of a square of 50/6 mm wide.
+    low, deep = round(15.5 * PX_PER_MM), round(22 * PX_PER_MM)
+    assert picture[low:deep, low : round(64 * PX_PER_MM)].max() == 0
+    assert "measure me: 100 mm" in text
+    dark = picture[..., 0] < 188  # half the light
+    rows = np.flatnonzero(dark[:, dark.shape[1] // 2 - 100 : dark.shape[1] // 2 + 100].all(axis=1))
+    columns = np.flatnonzero(dark[rows[0]])
+    assert (columns[-1] + 1 - columns[0]) / PX_PER_MM == pytest.approx(100.0, abs=0.4)
+
+
+@pytest.mark.parametrize(
+    ("options", "ids", "said"),
+    [
+        ([], [0, 1, 2, 3], "--aruco A4:50mm"),
+        (["--ids", 4, "--size", "60mm"], [4, 5, 6, 7], "--aruco A4:60mm --marker-ids 4 5 6 7"),
+        (["--count", 8], [*range(8)], "--aruco A4:50mm --marker-ids 0 1 2 3 4 5 6 7"),
+        (["--single", "--ids", 5, "--count", 2], [5, 6], "--aruco 120mm"),
+    ],
+)
+def test_the_options_that_are_said_find_the_markers(run, tmp_path, options, ids, said):
+    path = tmp_path / "sheet.pdf"
+    told = run("markers", "-o", path, "--json", *options).json()
+    assert (told["ids"], told["options"]) == (ids, said.split())
+    named = build_parser().parse_args(["segment", "photo.jpg", "-o", "out", *told["options"]])
+    assert all(scale_from(named).lists(one) for one in ids)
+    # Single markers have a page each.
+    for page, marker_id in enumerate(ids if "--single" in options else ()):
+        picture, _, text = rendered(path, page)
+        (one,) = find_markers(picture)
+        assert (one.id, f"marker {marker_id}" in text) == (marker_id, True)
+        sides = np.hypot(*(one.corners_px - np.roll(one.corners_px, 1, axis=0)).T)
+        assert sides / PX_PER_MM == pytest.approx(np.full(4, 120.0), abs=0.08)

@@ -1,22 +1,23 @@
+"""Blocks of label images, and the interfaces between them."""
+
+import math
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from drystone.contacts.blocks import (
-    model_from_labels,
-    model_with,
-    notice_of_pieces,
-    pieces_apart,
-)
+from drystone.contacts.blocks import model_from_labels, model_with, notice_of_pieces, pieces_apart
 from drystone.contacts.interfaces import PointContacts, find_interfaces
 from drystone.errors import InputError, LabelImageError
+from drystone.kernels.patches import painted_patch
 from drystone.model.placement import Placement, Wedge
 from drystone.model.pose import PosedStone
 from drystone.model.stone import Stone
-from drystone.statics.model import GROUND, Block, RigidBlockModel
+from drystone.statics.model import GROUND, RigidBlockModel
 from tests.naive import contacts as naive
+from tests.statics.walls import coursed, irregular, told
 from tests.strategies import dust_labels, label_images, repeatable
 
 pictures = arrays(
@@ -32,30 +33,13 @@ def placed(labels, block_id):
     return Placement(posed, int(rows.min()), int(cols.min()))
 
 
-def told(model):
-    """What a model says, in an order that does not depend on construction."""
-    interfaces = [
-        (i.block, i.other, [tuple(p) for p in i.points.tolist()], i.normal)
-        for i in model.interfaces
-    ]
-    return sorted(model.blocks, key=lambda block: block.id), sorted(interfaces), model.mu
-
-
-def test_area_and_centroid_of_pixel_squares():
-    labels = np.zeros((6, 8), np.uint32)
-    labels[4:, 2:6] = 70_000
-    labels[2:4, 2:4] = 70_000
-    (block,) = model_from_labels(labels).model.blocks
-    assert block == Block(70_000, 12.0, ((8 * 4 + 4 * 3) / 12, (8 * 1 + 4 * 3) / 12))
-
-
 def test_empty_rows_below_are_cropped_and_that_is_said():
-    labels = np.zeros((50, 30), np.uint32)
-    labels[0:40, 5:25] = 1
+    labels = np.pad(np.ones((40, 20), np.uint32), ((0, 10), (5, 5)))
     picture = model_from_labels(labels, mu=0.4)
     assert picture.ground_row == 40
-    assert [notice.code for notice in picture.notices] == ["W301"]
-    assert "10 empty rows" in str(picture.notices[0])
+    (notice,) = picture.notices
+    assert notice.code == "W301"
+    assert "10 empty rows" in str(notice)
     assert picture.model.blocks[0].centroid == (15.0, 20.0)
     assert picture.model.interfaces[0].other == GROUND
     assert picture.model.mu == 0.4
@@ -101,9 +85,10 @@ def test_stone_after_stone_gives_the_model_of_the_whole(labels, order, with_wedg
         new = np.isin(labels, [first, *wedges])
         built[new] = labels[new]
     expected = model_from_labels(labels, 0.5).model
-    blocks, interfaces, mu = told(model)
-    assert (interfaces, mu) == told(expected)[1:]
-    for block, other in zip(blocks, told(expected)[0], strict=True):
+    assert sorted(told(model.interfaces)) == sorted(told(expected.interfaces))
+    assert model.mu == expected.mu
+    blocks = sorted(model.blocks, key=lambda block: block.id)
+    for block, other in zip(blocks, expected.blocks, strict=True):
         assert (block.id, block.area) == (other.id, other.area)
         assert block.centroid == pytest.approx(other.centroid, abs=1e-12)
 
@@ -119,7 +104,8 @@ def test_points_known_before_change_nothing(labels, first):
     anew = model_with(model, wall, new)
     for interfaces in (model.interfaces, find_interfaces(labels)):
         found = model_with(model, wall, new, points=PointContacts.of(interfaces))
-        assert (told(found), found.added.closed) == (told(anew), anew.added.closed)
+        assert (found.blocks, found.added.closed) == (anew.blocks, anew.added.closed)
+        assert told(found.interfaces) == told(anew.interfaces)
 
 
 @given(labels=label_images() | dust_labels())
@@ -135,3 +121,44 @@ def test_the_notice_names_five_stones_and_counts_the_others():
     assert notice.code == "W304"
     assert notice.message.startswith("1 pixel of stone 1, 1 pixel of stone 2, ")
     assert "1 pixel of stone 5, pixels of 2 more lie apart from them" in notice.message
+
+
+@given(angle_deg=st.floats(-180, 180), offset=st.floats(-1, 1), size=st.integers(10, 60))
+@repeatable(200)
+def test_a_tilted_joint_is_one_run_with_a_bounded_error_of_its_normal(angle_deg, offset, size):
+    angle = math.radians(angle_deg)
+    row, col = np.mgrid[:size, :size]
+    x, y = col + 0.5 - size / 2, size / 2 - row - 0.5
+    normal = (-math.sin(angle), math.cos(angle))
+    labels = np.where(x * normal[0] + y * normal[1] > offset, 2, 1).astype(np.uint32)
+    (run,) = (i for i in find_interfaces(labels) if i.other == 1)
+    error = math.acos(min(1.0, run.normal[0] * normal[0] + run.normal[1] * normal[1]))
+    # Half a pixel up at one end and down at the other, and some for runs of a few steps.
+    assert error * run.length < 1.6
+    away = run.points - size / 2
+    assert np.abs(away @ normal - offset).max() <= 0.5**0.5 + 1e-9
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_interfaces_of_tilted_joints_equal_their_naive_twin(seed):
+    """Ids and points exactly; normals to rounding."""
+    for labels in (irregular(seed, 20, 90, 60), coursed(seed, 4, 120, gap_px=seed)):
+        found, expected = find_interfaces(labels), naive.interfaces(labels)
+        assert [each[:3] for each in told(found)] == [each[:3] for each in expected]
+        normals = [each[3] for each in expected]
+        assert np.array([i.normal for i in found]) == pytest.approx(np.array(normals), abs=1e-12)
+
+
+@given(seed=st.integers(0, 2**32), row=st.integers(0, 21), col=st.integers(0, 17))
+@repeatable(100)
+def test_the_contacts_that_are_closed_in_are_those_that_are_there_no_more(seed, row, col):
+    labels = np.random.default_rng(seed).choice([0, 0, 0, 1, 2, 3, 4], (24, 20)).astype(np.uint32)
+    mask = labels[row : row + 3, col : col + 5] == 0
+    grown = labels.copy()
+    grown[row : row + 3, col : col + 5][mask] = 9
+    patch, _ = painted_patch(labels, [(9, row, col, mask)])
+    found = find_interfaces(labels)
+    left = [each[:3] for each in told(find_interfaces(grown))]
+    before = [each[:3] for each in told(found)]
+    gone = [k for k, each in enumerate(before) if len(each[2]) == 1 and each not in left]
+    assert list(PointContacts.of(found).closed_in(patch)) == gone

@@ -62,32 +62,28 @@ def test_a_running_bond_keeps_every_rule_of_bond(wall):
     assert bond_faults(wall) == bond_faults(Masonry({})) == 0.0
 
 
-def test_heights_that_differ_on_both_sides_are_a_t_not_a_plus():
-    tall = {1: box(0, 0, 2, 2), 2: box(2, 0, 2, 1), 3: box(2, 1, 2, 1), 4: box(0, 2, 4, 1)}
-    found = find("running_joints", Masonry(tall))
-    assert (found.number, found.verdict) == (1.0, "good")
-    assert found.figures["longest joint, mean stone heights"] == pytest.approx(2.0 / 1.25, abs=0.1)
-    assert find("cross_joints", Masonry(tall)).cases == ()
-    loops = {1: box(0, 0, 2, 1.5), 2: box(2, 0, 2, 1), 3: box(0, 1.5, 2, 1.5), 4: box(2, 1, 2, 2)}
-    assert find("running_joints", Masonry(loops)).number == 2.0
-    assert find("cross_joints", Masonry(loops)).number == 0.0
+TALL = {1: box(0, 0, 2, 2), 2: box(2, 0, 2, 1), 3: box(2, 1, 2, 1), 4: box(0, 2, 4, 1)}
+HIGHER = {1: box(0, 0, 2, 1.5), 2: box(2, 0, 2, 1), 3: box(0, 1.5, 2, 1.5), 4: box(2, 1, 2, 2)}
+NEAR, FAR = (courses([[2.0, 2.0], [2.0 + step, 2.0 - step]]) for step in (0.1, 0.25))
+SLAB = {1: box(0, 0, 2, 1), 2: box(2, 0, 2, 1), 3: box(0, 1, 4, 0.08),
+        4: box(0, 1.08, 2, 1), 5: box(2, 1.08, 2, 1)}  # fmt: skip
 
 
-def test_a_joint_with_a_step_smaller_than_the_offset_runs_on():
-    near, far = (courses([[2.0, 2.0], [2.0 + step, 2.0 - step]]) for step in (0.1, 0.25))
-    assert find("running_joints", Masonry(near)).number == 2.0
-    assert find("cross_joints", Masonry(near)).number == 2.5
-    assert find("running_joints", Masonry(far)).number == 1.0
-    assert find("cross_joints", Masonry(far)).number == 0.0
-    strict = CraftSettings(offset=0.05)
-    assert find("running_joints", Masonry(near, settings=strict)).number == 1.0
-
-
-def test_a_slab_across_a_joint_ends_it():
-    loops = {1: box(0, 0, 2, 1), 2: box(2, 0, 2, 1), 3: box(0, 1, 4, 0.08)}
-    wall = Masonry(loops | {4: box(0, 1.08, 2, 1), 5: box(2, 1.08, 2, 1)})
-    assert find("running_joints", wall).number == 1.0
-    assert find("cross_joints", wall).cases == ()
+@pytest.mark.parametrize(("loops", "running", "crosses"), [
+    # Heights that differ on both sides are a T, not a plus.
+    (TALL, 1.0, 0.0), (HIGHER, 2.0, 0.0),
+    # A step smaller than the offset ends no joint, a slab across it does.
+    (NEAR, 2.0, 2.5), (FAR, 1.0, 0.0), (SLAB, 1.0, 0.0),
+])  # fmt: skip
+def test_where_a_joint_runs_on(loops, running, crosses):
+    found = find("running_joints", Masonry(loops))
+    assert (found.number, find("cross_joints", Masonry(loops)).number) == (running, crosses)
+    if loops is TALL:
+        longest = found.figures["longest joint, mean stone heights"]
+        assert longest == pytest.approx(2.0 / 1.25, abs=0.1)
+    if loops is NEAR:
+        strict = Masonry(loops, settings=CraftSettings(offset=0.05))
+        assert find("running_joints", strict).number == 1.0
 
 
 def test_open_joints_of_a_tracing_change_nothing_but_stones_far_apart_have_none():
@@ -100,9 +96,7 @@ def test_open_joints_of_a_tracing_change_nothing_but_stones_far_apart_have_none(
     wall = Masonry(open_joints(stack_bond(), 0.4))
     assert find("running_joints", wall).verdict == "not judged"
     assert find("one_over_two", wall).cases[0].words == "rests on no stone"
-
-
-def test_a_wedge_is_part_of_the_bed():
+    # A wedge is part of the bed.
     loops = {1: box(0, 0, 2, 1), 2: box(2, 0, 2, 1), 3: box(1, 1.4, 2, 1)}
     wedges = {8: box(1.2, 1, 0.5, 0.4), 9: box(2.3, 1, 0.5, 0.4)}
     assert Masonry(loops).supports[3] == ()

@@ -27,6 +27,10 @@ def slab_on(*, wedge_x, piers, slab=(0.0, 4.0)):
 
 
 def test_a_wedge_that_holds_the_slab_up_is_broken():
+    # Between two piers it only fills.
+    found = find("pins", slab_on(wedge_x=1.5, piers=[0.0, 3.0]))
+    assert (found.number, found.verdict, found.cases) == (0.0, "good", ())
+    assert found.figures["wedges"] == 1.0
     # Slab of weight 4 on a pier under [0, 1] and the wedge under [3.5, 4]: moments about x = 1
     # with the wedge's far edge give the least: 4 * (2 - 1) / (4 - 1).
     found = find("pins", slab_on(wedge_x=3.5, piers=[0.0]))
@@ -39,12 +43,11 @@ def test_a_wedge_that_holds_the_slab_up_is_broken():
     loops = {**slab_on(wedge_x=1.5, piers=[0.0]).loops, 7: box(0, 2, 4, 1)}
     # Twice the weight on it, over the weight of the slab alone.
     assert find("pins", modelled(loops, {9})).number == pytest.approx(2.0, abs=1e-6)
-
-
-def test_a_wedge_between_two_piers_only_fills():
-    found = find("pins", slab_on(wedge_x=1.5, piers=[0.0, 3.0]))
-    assert (found.number, found.verdict, found.cases) == (0.0, "good", ())
-    assert found.figures["wedges"] == 1.0
+    # A slope passes on the whole weight.
+    rise = 2.0 * np.tan(np.radians(20.0))
+    loops = {9: np.array([[0, 0], [2, 0], [2, 1 + rise], [0, 1]]),
+             8: np.array([[0, 1], [2, 1 + rise], [2, 3], [0, 3]])}  # fmt: skip
+    assert find("pins", modelled(loops, {9})).number == pytest.approx(1.0, abs=1e-6)
 
 
 def test_a_wedge_that_sticks_out_is_named():
@@ -55,6 +58,12 @@ def test_a_wedge_that_sticks_out_is_named():
         assert found.verdict == "broken"
         (out,) = [case for case in found.cases if "sticks out" in case.words]
         assert (out.stones, out.value) == ((9, 2), pytest.approx(0.6))
+    # Beyond its stone, but between others, it does not.
+    loops = {1: box(0, 0, 6, 1), 2: box(1, 1.2, 2, 1), 4: box(3.6, 1, 2, 1),
+             9: box(2.5, 1, 1.0, 0.2), 8: box(1.2, 1, 0.5, 0.2)}  # fmt: skip
+    assert find("pins", modelled(loops, {8, 9})).figures["wedges that stick out"] == 0.0
+    del loops[4]
+    assert find("pins", modelled(loops, {8, 9})).figures["wedges that stick out"] == 1.0
 
 
 def slab_with(wedge, *more):
@@ -73,19 +82,16 @@ def named(masonry):
 
 
 @pytest.mark.parametrize("factor", [1.0, 250.0])
-@pytest.mark.parametrize(
-    ("wedge", "words"),
-    [
-        (box(1, 1, 0.5, 0.3), ""),
-        (box(1, 1, 0.5, 0.082), "6.098 times as wide as thick, at most 5"),
-        (box(1, 1, 0.28, 0.06), "0.03 thick, at least 0.032"),
-        (box(1, 1, 0.18, 0.17), "0.09 wide, at least 0.096"),
-        (box(1, 1, 0.3, 0.33), "1.1 times as high as wide, at most 1"),
-        (box(1, 1, 0.7, 0.62), "0.31 high, at most 0.3"),
-        (box(1, 1, 1.2, 0.59), "0.177 in area, at most 0.144"),
-        ([[1, 1.1], [1.5, 1], [1.5, 1.4], [1, 1.19]], "34.1° between its faces, at most 30.1°"),
-    ],
-)
+@pytest.mark.parametrize(("wedge", "words"), [
+    (box(1, 1, 0.5, 0.3), ""),
+    (box(1, 1, 0.5, 0.082), "6.098 times as wide as thick, at most 5"),
+    (box(1, 1, 0.28, 0.06), "0.03 thick, at least 0.032"),
+    (box(1, 1, 0.18, 0.17), "0.09 wide, at least 0.096"),
+    (box(1, 1, 0.3, 0.33), "1.1 times as high as wide, at most 1"),
+    (box(1, 1, 0.7, 0.62), "0.31 high, at most 0.3"),
+    (box(1, 1, 1.2, 0.59), "0.177 in area, at most 0.144"),
+    ([[1, 1.1], [1.5, 1], [1.5, 1.4], [1, 1.19]], "34.1° between its faces, at most 30.1°"),
+])  # fmt: skip
 def test_wedges_that_no_mason_would_cut_are_named_in_stone_sizes(wedge, words, factor):
     masonry = slab_with(wedge)
     assert masonry.median_size == 2.0
@@ -95,15 +101,7 @@ def test_wedges_that_no_mason_would_cut_are_named_in_stone_sizes(wedge, words, f
     assert named(Masonry(loops, wedge_ids={9})) == ""
 
 
-def test_with_a_scale_thickness_is_judged_in_millimetres():
-    """A size of 2 is 200 mm, so the least is 5 mm less a fifth, not 8 mm less a fifth."""
-    masonry = slab_with(box(1, 1, 0.16, 0.05))
-    assert "thick" in named(masonry)
-    assert named(replace(masonry, per_m=10.0)) == ""
-    assert "thick" in named(replace(masonry, per_m=20.0))
-
-
-def test_a_wedge_with_nothing_beside_it_is_named():
+def test_a_wedge_with_nothing_beside_it_is_named_or_one_too_thin_for_the_scale():
     wedge, post = box(1, 1, 0.5, 0.3), box(5, 0, 2, 2)
     assert named(slab_with(wedge)) == ""
     assert named(slab_with(wedge, post, box(8, 0, 2, 2))) == "nothing beside it to the left"
@@ -111,22 +109,11 @@ def test_a_wedge_with_nothing_beside_it_is_named():
     assert mirrored == "nothing beside it to the right"
     # Stones that lie lower or higher are not beside it.
     assert "left; nothing" in named(slab_with(wedge, box(-3, 0, 2, 1), box(5, 1.3, 2, 1)))
-
-
-def test_a_wedge_beyond_its_stone_but_between_others_does_not_stick_out():
-    loops = {1: box(0, 0, 6, 1), 2: box(1, 1.2, 2, 1), 4: box(3.6, 1, 2, 1),
-             9: box(2.5, 1, 1.0, 0.2), 8: box(1.2, 1, 0.5, 0.2)}  # fmt: skip
-    found = find("pins", modelled(loops, {8, 9}))
-    assert found.figures["wedges that stick out"] == 0.0
-    del loops[4]
-    assert find("pins", modelled(loops, {8, 9})).figures["wedges that stick out"] == 1.0
-
-
-def test_a_slope_passes_on_the_whole_weight():
-    rise = 2.0 * np.tan(np.radians(20.0))
-    loops = {9: np.array([[0, 0], [2, 0], [2, 1 + rise], [0, 1]]),
-             8: np.array([[0, 1], [2, 1 + rise], [2, 3], [0, 3]])}  # fmt: skip
-    assert find("pins", modelled(loops, {9})).number == pytest.approx(1.0, abs=1e-6)
+    # A size of 2 is 200 mm at 10 px a metre: the least is 5 mm less a fifth, not 8 mm less a fifth.
+    thin = slab_with(box(1, 1, 0.16, 0.05))
+    assert "thick" in named(thin)
+    assert named(replace(thin, per_m=10.0)) == ""
+    assert "thick" in named(replace(thin, per_m=20.0))
 
 
 def test_pressure_in_upright_joints_does_not_hold_a_stone_up():
@@ -137,9 +124,7 @@ def test_pressure_in_upright_joints_does_not_hold_a_stone_up():
     assert pins.least_wedge_loads(wall.model, frozenset({9}))[9] == pytest.approx(0.0)
     assert find("pins", wall).number == pytest.approx(1.0 / 3.0, abs=1e-6)
     assert find("pins", wall).note == ""
-
-
-def test_a_slab_that_only_its_neighbours_hold_is_said():
+    # A slab that only its neighbours hold.
     loops = {1: box(0.5, 0, 1, 1), 8: box(0.5, 1, 4, 1), 9: box(2.0, 0, 0.3, 1),
              2: box(4.5, 0, 4, 4), 3: box(-3.5, 0, 4, 4)}  # fmt: skip
     found = find("pins", modelled(loops, {9}))
@@ -162,16 +147,7 @@ def test_a_wedge_that_friction_may_pull_down_carries_nothing():
     assert pins.least_wedge_loads(fixed, frozenset({2})) == {2: 0.0}
 
 
-def test_a_solver_that_gives_up_is_no_wall_that_falls(monkeypatch):
-    loops = {1: box(0, 0, 1, 1), 8: box(0, 1, 4, 1), 9: box(3.5, 0, 0.5, 1)}
-    gave_up = OptimizeResult(success=False, status=4)
-    monkeypatch.setattr(pins, "linprog", lambda *_, **__: gave_up)
-    found = find("pins", modelled(loops, {9}))
-    assert found.number is None
-    assert found.note == "What the wedges carry is not known: the solver gave up."
-
-
-def test_without_wedges_or_contacts_nothing_is_judged():
+def test_without_wedges_contacts_or_an_answer_nothing_is_judged(monkeypatch):
     assert find("pins", Masonry({1: box(0, 0, 1, 1)})).verdict == "not judged"
     loops = {1: box(0, 0, 2, 1), 2: box(0, 1.4, 2, 1), 9: box(1, 1, 0.5, 0.2),
              3: box(-2, 0, 1, 3), 4: box(3, 0, 1, 3)}  # fmt: skip
@@ -179,3 +155,10 @@ def test_without_wedges_or_contacts_nothing_is_judged():
     found = find("pins", floating)
     assert (found.number, found.verdict) == (None, "not judged")
     assert "does not stand" in found.note
+    # A solver that gives up is no wall that falls.
+    loops = {1: box(0, 0, 1, 1), 8: box(0, 1, 4, 1), 9: box(3.5, 0, 0.5, 1)}
+    gave_up = OptimizeResult(success=False, status=4)
+    monkeypatch.setattr(pins, "linprog", lambda *_, **__: gave_up)
+    found = find("pins", modelled(loops, {9}))
+    assert found.number is None
+    assert found.note == "What the wedges carry is not known: the solver gave up."

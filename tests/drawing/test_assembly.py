@@ -19,11 +19,21 @@ from tests.drawing.export.robot_plans import (
 
 
 @pytest.mark.parametrize("name", METRIC)
-def test_pixels_of_a_stone_land_inside_its_outline(name):
+def test_outlines_hold_the_pixels_of_stones_and_are_those_of_the_blocks(name):
     wall, stones = assembly(name), source_stones()
     # The outline of a plan on pixels is that of pixels of 2 source px.
     near_m = (0.7 if name.startswith("exact") else 2.5) / PX_PER_M
-    for part in wall.stones:
+    areas = {block.id: block.area for block in wall.model.blocks}
+    for part in wall.parts:
+        outline = shapely.Polygon(part.corners)
+        assert outline.is_valid
+        assert outline.exterior.is_ccw
+        assert outline.area == pytest.approx(part.area, rel=1e-12)
+        assert outline.area == pytest.approx(areas[part.id], rel=1e-9)
+        off_m = 1e-9 if name.startswith("exact") else 1.0 / PX_PER_M
+        assert part.centroid == pytest.approx(outline.centroid.coords[0], abs=off_m)
+        if part.kind == "wedge":
+            continue
         stone = stones.by_id(part.id)
         pick = wall.pick_pose(part)
         rows, cols = np.nonzero(stone.mask)
@@ -31,14 +41,14 @@ def test_pixels_of_a_stone_land_inside_its_outline(name):
         y = stone.bottom_px + stone.mask.shape[0] - rows - 0.5
         photo = np.column_stack([x / PX_PER_M, y / PX_PER_M, 0 * x, 0 * x + 1])
         moved = wall.place_pose(part).matrix @ np.linalg.inv(pick.matrix) @ photo.T
-        outline = shapely.Polygon(part.corners)
         points = shapely.points(moved[0], moved[2])
         assert shapely.distance(outline, points).max() < near_m
         assert outline.area * PX_PER_M**2 == pytest.approx(len(x), rel=0.06)
 
 
-def test_the_grip_is_the_least_width_of_any_direction():
-    for part in assembly("exact").parts:
+def test_the_grip_is_the_least_width_of_any_direction_and_wedges_are_in_no_photo():
+    wall = assembly("exact")
+    for part in wall.parts:
         width, angle_deg = part.grip
         angles = np.radians(np.append(np.arange(0.0, 180.0, 0.25), angle_deg))
         across = np.stack([np.cos(angles), np.sin(angles)])
@@ -46,10 +56,6 @@ def test_the_grip_is_the_least_width_of_any_direction():
         assert widths[-1] == pytest.approx(width)
         assert widths.min() >= width - 1e-12
         assert 0.0 <= angle_deg < 180.0
-
-
-def test_wedges_are_in_no_photo():
-    wall = assembly("exact")
     (wedge,) = wall.wedges
     assert (wedge.kind, wedge.name, wedge.angle_deg) == ("wedge", "wedge_010", 0.0)
     assert wedge.under == 8
@@ -59,9 +65,12 @@ def test_wedges_are_in_no_photo():
         wedge.corners[0, 0] = 1.0
 
 
-def test_folder_and_file_are_the_same_plan(tmp_path):
-    write_plan_folder("exact", tmp_path)
-    one, other = read_assembly(tmp_path), read_assembly(tmp_path / "plan.json")
+def test_folder_and_file_are_the_same_plan_of_one_scale(tmp_path):
+    metric, px = tmp_path / "raster-m", tmp_path / "exact"
+    for folder in (metric, px):
+        folder.mkdir()
+        write_plan_folder(folder.name, folder)
+    one, other = read_assembly(px), read_assembly(px / "plan.json")
     assert one.plan == other.plan
     assert [part.name for part in one.parts] == [part.name for part in other.parts]
     assert (one.unit, one.size) == ("px", (110.0, 40.0))
@@ -70,50 +79,25 @@ def test_folder_and_file_are_the_same_plan(tmp_path):
     middle = len(sides) // 2
     assert len(sides) % 2 == 0
     assert one.thickness == pytest.approx((sides[middle - 1] + sides[middle]) / 2)
-    (tmp_path / "blocks.json").unlink()
-    with pytest.raises(DrystoneError, match="E133"):
-        read_assembly(tmp_path)
-
-
-def test_areas_of_outlines_are_those_of_the_blocks():
-    for name in METRIC:
-        wall = assembly(name)
-        areas = {block.id: block.area for block in wall.model.blocks}
-        for part in wall.parts:
-            polygon = shapely.Polygon(part.corners)
-            assert polygon.is_valid
-            assert polygon.exterior.is_ccw
-            assert polygon.area == pytest.approx(part.area, rel=1e-12)
-            assert polygon.area == pytest.approx(areas[part.id], rel=1e-9)
-            x, y = polygon.centroid.coords[0]
-            near_m = 1e-9 if name.startswith("exact") else 1.0 / PX_PER_M
-            assert part.centroid == pytest.approx((x, y), abs=near_m)
-
-
-def test_one_scale_only_and_a_thickness_needs_one(tmp_path):
-    metric, px = tmp_path / "raster-m", tmp_path / "exact"
-    for folder in (metric, px):
-        folder.mkdir()
-        write_plan_folder(folder.name, folder)
     assert read_assembly(metric, px_per_m=PX_PER_M).px_per_m == PX_PER_M
     with pytest.raises(DrystoneError, match=r"E131 .*137 px a metre, not 200"):
         read_assembly(metric, px_per_m=200.0)
-    with pytest.raises(DrystoneError, match="E131"):
+    with pytest.raises(DrystoneError, match="E131"):  # a thickness needs a scale
         read_assembly(px, thickness_m=0.3)
-    told, wall = read_assembly(px, thickness_m=0.3, px_per_m=100.0), read_assembly(px)
+    told = read_assembly(px, thickness_m=0.3, px_per_m=100.0)
     assert told.thickness == 0.3
-    assert told.parts[0].corners == pytest.approx(wall.parts[0].corners / 100)
-
-
-def under(step, stone):
-    return step | ({"under": stone} if step["kind"] == "wedge" else {})
+    assert told.parts[0].corners == pytest.approx(one.parts[0].corners / 100)
+    (px / "blocks.json").unlink()
+    with pytest.raises(DrystoneError, match="E133"):
+        read_assembly(px)
 
 
 @pytest.mark.parametrize(
     ("name", "tampered", "code", "said"),
     [
         ("exact", lambda s: [*s, s[-1] | {"step": len(s) + 1}], "E213", "was placed before"),
-        ("exact", lambda s: [under(one, 9999) for one in s], "E214", "does not follow stone 9999"),
+        ("exact", lambda s: [one | {"under": 9999} if "under" in one else one for one in s],
+         "E214", "does not follow stone 9999"),
         ("raster-m", lambda s: s[::-1], "E214", "this is step 1 of the plan"),
         ("raster-m", lambda s: [one | {"step": one["step"] + 1} for one in s], "E214",
          "this is step 1 of the plan"),
@@ -128,7 +112,7 @@ def test_steps_that_nobody_can_build_by_are_refused(name, tampered, code, said, 
         read_assembly(tmp_path)
 
 
-def test_a_pit_that_meets_the_outside_at_a_corner_is_filled():
+def test_pits_that_meet_the_outside_at_a_corner_are_filled_holes_and_lesser_pieces_left_out():
     labels = np.zeros((8, 9), np.uint32)
     labels[1:7, 1:8] = 3
     labels[1, 1] = labels[2, 2] = 0
@@ -138,9 +122,6 @@ def test_a_pit_that_meets_the_outside_at_a_corner_is_filled():
     assert polygon.is_valid
     assert polygon.exterior.is_ccw
     assert polygon.area == 6 * 7 - 1
-
-
-def test_holes_and_lesser_pieces_are_left_out():
     labels = np.zeros((9, 12), np.uint32)
     labels[1:8, 1:8] = 3
     labels[3:5, 3:5] = 0

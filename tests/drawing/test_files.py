@@ -34,36 +34,39 @@ from tests.verify.exact_examples import exact_example
 
 
 @pytest.mark.parametrize("name", ["wall.png", "wall.pdf", "wall.svg"])
-def test_same_picture_same_bytes(tmp_path, name):
-    made = []
+def test_same_picture_same_bytes_and_nothing_global_changes(tmp_path, name):
+    made, before = [], dict(mpl.rcParams)
     for _ in range(2):
         ax = plot_wall(examples.wall(), examples.CLUSTERS, title="twice")
         save(ax.figure, tmp_path / name, dpi=50)
         made.append((tmp_path / name).read_bytes())
     first, second = made
     assert first == second
+    assert dict(mpl.rcParams) == before
     # Two files of the same second would agree in spite of a date.
     assert not any(date in first for date in (b"CreationDate", b"dc:date", b"tIME"))
     assert b"Software" not in first
+
+
+def test_endings_of_pictures_are_checked_and_drawing_loads_no_pyplot(tmp_path):
     with pytest.raises(ValueError, match=r"pictures end in \.png, \.pdf, \.svg"):
-        save(ax.figure, tmp_path / "wall.bmp")
+        save(plot_wall(examples.wall()).figure, tmp_path / "wall.bmp")
+    code = "import sys, drystone.drawing; print('matplotlib.pyplot' in sys.modules)"
+    done = subprocess.run(  # noqa: S603 - our own interpreter and text
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True
+    )
+    assert done.stdout.strip() == "False"
 
 
-@pytest.fixture
-def drawn(monkeypatch):
-    """Pictures of mechanisms that are drawn: wall, direction, alpha, numbers, axes."""
-    found = []
+def test_pictures_are_written_where_a_mechanism_exists(tmp_path, monkeypatch):
+    drawn = []
 
     def noted(shown, mechanism, *load, numbers):
-        found.append((shown, *load, numbers, plot_mechanism(shown, mechanism, *load)))
-        return found[-1][-1]
+        drawn.append((shown, *load, numbers, plot_mechanism(shown, mechanism, *load)))
+        return drawn[-1][-1]
 
     monkeypatch.setattr(files, "plot_mechanism", noted)
     monkeypatch.setattr(save, "__defaults__", (20,))
-    return found
-
-
-def test_pictures_are_written_where_a_mechanism_exists(tmp_path, drawn):
     (tmp_path / "mechanism_right.png").write_bytes(b"of another wall")
     both = examples.resistance()
     write_pictures(tmp_path, examples.wall(), resistance=both)
@@ -76,30 +79,18 @@ def test_pictures_are_written_where_a_mechanism_exists(tmp_path, drawn):
     # The numbers of picture.png, which are steps.
     assert drawn[0][3] == {piece_id(step): step.step for step in examples.plan().steps}
 
-
-def test_nothing_global_changes(tmp_path):
-    before = dict(mpl.rcParams)
-    save(plot_wall(examples.wall(), examples.CLUSTERS).figure, tmp_path / "wall.svg")
-    assert dict(mpl.rcParams) == before
-    code = "import sys, drystone.drawing; print('matplotlib.pyplot' in sys.modules)"
-    done = subprocess.run(  # noqa: S603 - our own interpreter and text
-        [sys.executable, "-c", code], capture_output=True, text=True, check=True
-    )
-    assert done.stdout.strip() == "False"
-
-
-def test_mechanisms_of_a_wall_of_outlines_are_drawn_of_its_outlines(tmp_path, drawn):
+    # Mechanisms of a wall of outlines are drawn of its outlines.
+    drawn.clear()
     wall = exact_example(0.5, 50.0).wall
     model = model_of_outlines(wall.outlines, 0.58, 0.1)
-    both = lateral_resistance(model, mechanism=True)
-    write_pictures(tmp_path, wall, resistance=both)
+    write_pictures(tmp_path, wall, resistance=lateral_resistance(model, mechanism=True))
     assert {one.name for one in tmp_path.iterdir()} == {files.PICTURE, *files.MECHANISMS.values()}
     for shown, *_, ax in drawn:
         assert set(shown) == {block.id for block in model.blocks}
         for block, corners in wall.outlines.blocks:
             np.testing.assert_array_equal(shown[block], corners)
         assert "ground" in patches(ax)
-    # Those of a wall of outlines do not stay beside one that has none.
+    # They do not stay beside a wall that has none.
     write_pictures(tmp_path, examples.wall())
     assert [path.name for path in tmp_path.iterdir()] == [files.PICTURE]
 
@@ -135,7 +126,7 @@ def coordinates(width, height):
 
 
 @pytest.mark.parametrize("zoom", [0.5, 1, 8])
-def test_a_piece_shows_its_box_at_any_resolution(zoom):
+def test_a_piece_shows_its_box_at_any_resolution_and_beyond_the_photograph_white(zoom):
     photo = StonePhoto(coordinates(round(200 * zoom), round(100 * zoom)), 200.0, 100.0)
     piece = photo.crop((50.0, 20.0, 110.0, 60.0)).astype(float)
     height, width, _ = piece.shape
@@ -148,11 +139,8 @@ def test_a_piece_shows_its_box_at_any_resolution(zoom):
     across, down = piece[height // 2, [0, -1], 0], piece[[0, -1], width // 2, 1]
     assert across / 255 * 200 == pytest.approx([left, right], abs=1.8)
     assert down / 255 * 100 == pytest.approx([top, bottom], abs=1.8)
-
-
-def test_beyond_the_photograph_it_is_white_and_there_may_be_none():
-    photo = StonePhoto(Image.new("RGB", (100, 100), "black"), 100.0, 100.0)
-    piece = photo.crop((-20.0, 40.0, 20.0, 60.0))
-    assert (piece[:, :18] == 255).all()
-    assert (piece[:, 22:] == 0).all()
+    beyond = photo.crop((-20.0, 40.0, 20.0, 60.0))
+    middle = beyond.shape[1] // 2
+    assert (beyond[:, : middle - 2] == 255).all()
+    assert (beyond[:, middle + 2 :, 2] == 0).all()
     assert read_photo(assembly()) is None

@@ -1,3 +1,5 @@
+from itertools import product
+
 import numpy as np
 import pytest
 import shapely
@@ -72,7 +74,7 @@ def test_regions_of_polygons_have_their_centroid_and_area(offset):
         assert naive.signed_area(region.loops[0] - offset) == pytest.approx(5.0)
 
 
-def test_regions_of_a_wall_stand_on_its_lowest_stone():
+def test_regions_of_a_wall_stand_on_its_lowest_stone_and_settled_stones_on_the_ground():
     labels = np.array([[0, 5], [3, 5], [0, 0], [0, 0]], np.uint32)
     regions = wall_regions(labels)
     assert [region.centroid for region in regions] == [(0.5, 0.5), (1.5, 1.0)]
@@ -80,13 +82,9 @@ def test_regions_of_a_wall_stand_on_its_lowest_stone():
     assert wall_regions(np.zeros((3, 3), np.uint32)) == ()
     polygons = wall_regions({5: box(0, 2, 1, 3), 3: box(4, 2, 5, 3)})
     assert [region.id for region in polygons] == [3, 5]
-
-
-@pytest.mark.parametrize("unit", [1.0, 1 / 200.0])
-def test_stones_that_settled_stand_on_the_ground(unit):
-    """They hang .01 source px above it."""
+    # Settled stones hang .01 source px above it.
     blocks = exact_example().wall.outlines.blocks
     assert min(loop[:, 1].min() for _, loop in blocks) == pytest.approx(GAP_PX, rel=1e-4)
-    for lift, stands in ((0, True), (1, False), (-1, False)):
+    for unit, lift in product((1.0, 1 / 200.0), (0, 1, -1)):
         outlines = {block: (loop + np.array([0, lift])) * unit for block, loop in blocks}
-        assert stands_on_ground(wall_regions(outlines)) is stands
+        assert stands_on_ground(wall_regions(outlines)) is (lift == 0)

@@ -1,15 +1,20 @@
-"""The fuzzer finds every kind of defect, names its place and goes on; readers have none."""
+"""The fuzzer finds every kind of defect in files that were valid before; readers have none."""
 
 import io
 import json
 import subprocess
 import sys
+from contextlib import suppress
 from pathlib import Path
+from random import Random
 
 import pytest
-from fuzz.driver import pixels_of
+from fuzz.driver import Source, pixels_of, place
+from fuzz.formats import FORMATS
+from fuzz.walls import plans
 from PIL import Image
 
+from drystone.errors import DrystoneError
 from tests.fuzz.planted import OUTSIDE, PLANTED
 
 ROOT = Path(__file__).parents[2]
@@ -38,33 +43,32 @@ def found():
     return report["faults"]
 
 
-@pytest.mark.parametrize(
-    ("name", "kind", "where"),
-    [
-        ("raises", "LookupError", "planted.py raises"),
-        ("leaves", "SystemExit", "planted.py leaves"),
-        ("spins", "time", "planted.py spins"),
-        ("backtracks", "time", "re/__init__.py match"),
-        ("waits", "stuck", "planted.py waits"),
-        ("eats", "memory", "planted.py eats"),
-        ("eats_quietly", "memory", "planted.py eats_quietly"),
-        ("dies", "crash SIGSEGV", "planted.py dies"),
-        ("prints", "output", "stderr"),
-        ("warns", "warning", "planted.py warns"),
-        ("logs", "log", "planted.py logs"),
-        ("starts", "process", "subprocess.py _execute_child"),
-        ("hides", "process", "subprocess.py _execute_child"),
-        ("writes", "write", "pathlib.py open"),
-        ("removes", "write", "pathlib.py unlink"),
-        ("unpickles", "pickle", "planted.py unpickles"),
-        ("connects", "network", "socket.py getaddrinfo"),
-    ],
-)
-def test_planted_defects_are_found(found, name, kind, where):
+KINDS = {
+    "raises": "LookupError", "leaves": "SystemExit", "spins": "time", "backtracks": "time",
+    "waits": "stuck", "eats": "memory", "eats_quietly": "memory", "dies": "crash SIGSEGV",
+    "prints": "output", "warns": "warning", "logs": "log", "starts": "process", "hides": "process",
+    "writes": "write", "removes": "write", "unpickles": "pickle", "connects": "network",
+}  # fmt: skip
+ELSEWHERE = {
+    "backtracks": "re/__init__.py match", "prints": "stderr", "writes": "pathlib.py open",
+    "starts": "subprocess.py _execute_child", "hides": "subprocess.py _execute_child",
+    "removes": "pathlib.py unlink", "connects": "socket.py getaddrinfo",
+}  # fmt: skip
+"""Where the defects are that lie in libraries."""
+
+
+@pytest.mark.parametrize("name", KINDS)
+def test_planted_defects_are_found(found, name):
     (fault,) = [fault for fault in found if fault["format"] == name]
-    assert fault["kind"] == kind
-    assert where in fault["where"]
+    assert fault["kind"] == KINDS[name]
+    assert ELSEWHERE.get(name, f"planted.py {name}") in fault["where"]
     assert 1 <= len(fault["numbers"]) < EACH
+
+
+def files_in(folder):
+    """Contents by name of all files in a folder."""
+    files = [path for path in folder.rglob("*") if path.is_file()]
+    return {path.relative_to(folder): path.read_bytes() for path in files}
 
 
 def test_jobs_change_nothing_and_files_come_back(tmp_path):
@@ -83,17 +87,43 @@ def test_jobs_change_nothing_and_files_come_back(tmp_path):
     assert again == {path: data for path, data in kept.items() if path.parent.name == name}
 
 
-def files_in(folder):
-    """Contents by name of all files in a folder."""
-    files = [path for path in folder.rglob("*") if path.is_file()]
-    return {path.relative_to(folder): path.read_bytes() for path in files}
+def test_pixels_are_those_of_the_header():
+    for kind in ("PNG", "GIF", "BMP"):
+        Image.new("L", (70, 30)).save(data := io.BytesIO(), kind)
+        assert (
+            pixels_of({"a": data.getvalue(), "b": b"of nothing that has pixels, and long"}) == 2100
+        )
 
 
-@pytest.mark.parametrize("kind", ["PNG", "GIF", "BMP"])
-def test_pixels_are_those_of_the_header(kind):
-    data = io.BytesIO()
-    Image.new("L", (70, 30)).save(data, kind)
-    assert pixels_of({"a": data.getvalue(), "b": b"of nothing that has pixels, and long"}) == 2100
+@pytest.mark.parametrize("one", FORMATS, ids=lambda one: one.name)
+def test_most_valid_files_are_read(one, tmp_path):
+    """All but those that are there to be refused; with any of the settings, so some say no."""
+    read, seeds = 0, one.seeds()
+    assert seeds == one.seeds()
+    for case in seeds:
+        path = place(case, tmp_path / "case")
+        for draw in range(12):
+            with suppress(DrystoneError):
+                one.run(path.parent if one.folder else path, Random(draw))
+                read += 1
+                break
+    assert read >= len(seeds) / 2
+
+
+def test_plans_have_all_that_is_read_of_them():
+    raster, exact = plans()
+    assert {"plan.json", "wall.png", "stones.png", "settings.toml", "photo.jpg"} <= raster.keys()
+    assert exact.keys() - raster.keys() == {"blocks.json"}
+    for case in (raster, exact):
+        assert b'"kind": "wedge"' in case["plan.json"]
+
+
+def test_an_execution_depends_on_its_number_and_the_seed_alone():
+    some = [one for one in FORMATS if one.name in ("png", "coco", "dxf")]
+    one, same, other = Source(some, 5), Source(some[::-1], 5), Source(some, 6)
+    cases = [one.case("png", number)[0] for number in range(40)]
+    assert cases == [same.case("png", number)[0] for number in range(40)]
+    assert cases != [other.case("png", number)[0] for number in range(40)]
 
 
 SEED, EXECUTIONS = 20261125, 2_290

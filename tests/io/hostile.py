@@ -12,16 +12,15 @@ import zlib
 
 import ezdxf
 import numpy as np
-from PIL import Image
 
 from drystone.io.read_settings import ReadSettings
 from tests.io import test_annotations
 from tests.io.pictures import npy, png_of, two_stones
 from tests.io.test_dxf import text_of
+from tests.io.test_formats import pillow
 
 EPS = b"%!PS-Adobe-3.0 EPSF-3.0\n%%BoundingBox: 0 0 60 36\n%%EndComments\n(x) print\n%%EOF\n"
-STONE = '<rect width="9" height="9"/>'
-LIMIT = 10**6
+STONE, USE = '<rect width="9" height="9"/>', "<use href='#p'/>"
 
 
 def tiff_of(tags=None, *, following=0, big=False):
@@ -41,9 +40,8 @@ def tiff_of(tags=None, *, following=0, big=False):
 
 def many_entries():
     """A BigTIFF with more entries than offsets can count."""
-    data = bytearray(tiff_of(big=True))
-    data[16:24] = struct.pack("<Q", 2**63)
-    return bytes(data)
+    data = tiff_of(big=True)
+    return data[:16] + struct.pack("<Q", 2**63) + data[24:]
 
 
 def signalling():
@@ -60,8 +58,7 @@ def npy_of(shape, descr="<u4"):
 
 
 def npz(members, compression=zipfile.ZIP_DEFLATED):
-    buffer = io.BytesIO()
-    with zipfile.ZipFile(buffer, "w", compression) as archive:
+    with zipfile.ZipFile(buffer := io.BytesIO(), "w", compression) as archive:
         for name, data in members.items():
             archive.writestr(name, data)
     return buffer.getvalue()
@@ -69,16 +66,15 @@ def npz(members, compression=zipfile.ZIP_DEFLATED):
 
 def gif(width, height):
     """A GIF of 6 x 4 px whose frame has another size."""
-    Image.fromarray(np.ones((4, 6), np.uint8)).save(buffer := io.BytesIO(), "GIF")
+    data = pillow(np.ones((4, 6), np.uint8), "GIF")
     frame = struct.pack("<HHHH", 0, 0, 6, 4)
-    assert buffer.getvalue().count(frame) == 1
-    return buffer.getvalue().replace(frame, struct.pack("<HHHH", 0, 0, width, height))
+    assert data.count(frame) == 1
+    return data.replace(frame, struct.pack("<HHHH", 0, 0, width, height))
 
 
 def bmp(width):
     """A BMP of one row of run lengths, which goes two rows up before its first pixel."""
-    Image.fromarray(np.ones((4, 6), np.uint8)).save(buffer := io.BytesIO(), "BMP")
-    data = bytearray(buffer.getvalue())
+    data = bytearray(pillow(np.ones((4, 6), np.uint8), "BMP"))
     data[18:34] = struct.pack("<iiHHI", width, 1, 1, 8, 1)
     start = int.from_bytes(data[10:14], "little")
     return bytes(data[:start]) + b"\0\2\0\xff" * 9
@@ -86,9 +82,7 @@ def bmp(width):
 
 def jpeg(scans):
     """A progressive JPEG whose last scan comes again and again."""
-    values = np.full((40, 60), 7, np.uint8)
-    Image.fromarray(values).save(buffer := io.BytesIO(), "JPEG", progressive=True)
-    data = buffer.getvalue()
+    data = pillow(np.full((40, 60), 7, np.uint8), "JPEG", progressive=True)
     last = data.rindex(b"\xff\xda")
     return data[:last] + data[last:-2] * scans + data[-2:]
 
@@ -132,9 +126,9 @@ def far_away(document):
 
 def in_rows(document):
     document.blocks.new("NOTHING")
-    reference = document.modelspace().add_blockref("NOTHING", (0, 0))
-    reference.dxf.row_count = reference.dxf.column_count = 30_000
-    reference.dxf.row_spacing = reference.dxf.column_spacing = 1.0
+    reference = document.modelspace().add_blockref("NOTHING", (0, 0)).dxf
+    reference.row_count = reference.column_count = 30_000
+    reference.row_spacing = reference.column_spacing = 1.0
 
 
 def nested(document):
@@ -143,7 +137,7 @@ def nested(document):
 
 
 def high_degree(document):
-    points = [(float(x), float(y), 0.0) for x, y in np.random.default_rng(0).random((90, 2))]
+    points = [(x, y, 0.0) for x, y in np.random.default_rng(0).random((90, 2)).tolist()]
     document.modelspace().add_open_spline(points, degree=89)
 
 
@@ -170,10 +164,6 @@ def inflated():
     """A TIFF whose strip becomes more than a million times as large as the picture."""
     strip = zlib.compress(bytes(90_000_000), 1)
     return tiff_of({259: 8, 273: 200, 279: len(strip)}).ljust(200, b"\0") + strip
-
-
-def used(length):
-    return svg(f"<defs><path id='p' class='{'x' * length}'/></defs>" + "<use href='#p'/>" * 999)
 
 
 SETTINGS = {
@@ -231,7 +221,10 @@ FILES = {
         "E110 .*far away",
     ),
     "curves.svg": (lambda: svg(f'<path d="M1 1t{"1 1 " * 10_000}z"/>'), "E114 .*corners"),
-    "used.svg": (lambda: used(10_000), "E110 .*used too often"),
+    "used.svg": (
+        lambda: svg(f"<defs><path id='p' class='{'x' * 10_000}'/></defs>" + USE * 999),
+        "E110 .*used too often",
+    ),
     "scans.jpg": (lambda: jpeg(500), "E106 .*more than 100 scans"),
     "few_scans.jpg": (lambda: jpeg(50), "E104"),
     "side.bmp": (lambda: bmp(150_000_000), "E110 .*of a side"),

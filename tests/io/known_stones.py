@@ -48,13 +48,9 @@ def masks():
     centres = np.column_stack([cols.ravel(), rows.ravel()])
     found = {}
     for stone, polygons in STONES.items():
-        mask = np.zeros(HEIGHT * WIDTH, bool)
-        for outer, *holes in polygons:
-            inside = Outline(outer).contains_points(centres)
-            for hole in holes:
-                inside &= ~Outline(hole).contains_points(centres)
-            mask |= inside
-        found[stone] = mask.reshape(HEIGHT, WIDTH)
+        rings = [Outline(ring) for rings in polygons for ring in rings]
+        inside = np.logical_xor.reduce([ring.contains_points(centres) for ring in rings])
+        found[stone] = inside.reshape(HEIGHT, WIDTH)
     return found
 
 
@@ -66,21 +62,6 @@ def label_image():
     return labels
 
 
-def placed(stone, width, height):
-    """The pixels of a stone in its picture."""
-    whole = np.zeros((height, width), bool)
-    rows, cols = stone.mask.shape
-    top = height - stone.bottom_px - rows
-    whole[top : top + rows, stone.left_px : stone.left_px + cols] = stone.mask
-    return whole
-
-
-@functools.cache
-def true_stones(settings):
-    """The label image as it is read."""
-    return read_stones(label_image(), settings=settings)
-
-
 def compare(stones, settings=PIECES, ids=None):
     """Return the least IoU, the largest relative error of an area, and of a centroid in px.
 
@@ -88,24 +69,28 @@ def compare(stones, settings=PIECES, ids=None):
     """
     truth = true_stones(settings)
     assert len(stones) == len(truth)
-    ids = ids or {stone.id: stone.id for stone in truth}
     left = min(stone.left_px for stone in truth) - min(stone.left_px for stone in stones)
     bottom = min(stone.bottom_px for stone in truth) - min(stone.bottom_px for stone in stones)
     ious, areas, centroids = [], [], []
     for true in truth:
-        found = stones.by_id(ids[true.id])
-        mask = np.zeros((2 * HEIGHT, 2 * WIDTH), bool)
-        rows, cols = found.mask.shape
-        row, col = 2 * HEIGHT - (found.bottom_px + bottom) - rows, found.left_px + left
-        mask[row : row + rows, col : col + cols] = found.mask
-        want = np.zeros_like(mask)
-        want[HEIGHT:, :WIDTH] = placed(true, WIDTH, HEIGHT)
+        found = stones.by_id(ids[true.id] if ids else true.id)
+        mask, want = np.zeros((2, 2 * HEIGHT, 2 * WIDTH), bool)
+        for image, stone, x, y in ((mask, found, left, bottom), (want, true, 0, 0)):
+            rows, cols = stone.mask.shape
+            row, col = 2 * HEIGHT - (stone.bottom_px + y) - rows, stone.left_px + x
+            image[row : row + rows, col : col + cols] = stone.mask
         ious.append((mask & want).sum() / (mask | want).sum())
         areas.append(abs(found.area_px / true.area_px - 1.0))
         # Of the pixels: a stone that was drawn has the centroid of its outline.
         centre = np.add(centroid_of(found.mask), (found.left_px, found.bottom_px))
         centroids.append(math.dist(centre, np.subtract(true.centroid, (left, bottom))))
     return float(min(ious)), max(areas), round(max(centroids), 9)
+
+
+@functools.cache
+def true_stones(settings):
+    """The label image as it is read."""
+    return read_stones(label_image(), settings=settings)
 
 
 def close(stones, settings=PIECES):

@@ -18,12 +18,9 @@ def two_stones(first=300, second=70000, dtype=np.uint32):
 
 def many_stones(rows=6, cols=8, *, size=24, gap=6, first=1, step=3):
     """A label image of rows x cols squares with ids first, first + step ..."""
-    pitch = size + gap
-    labels = np.zeros((rows * pitch + gap, cols * pitch + gap), np.uint32)
-    for i in range(rows * cols):
-        top, left = gap + pitch * (i // cols), gap + pitch * (i % cols)
-        labels[top : top + size, left : left + size] = first + step * i
-    return labels
+    ids = first + step * np.arange(rows * cols, dtype=np.uint32).reshape(rows, cols)
+    square = np.pad(np.ones((size, size), np.uint32), ((gap, 0), (gap, 0)))
+    return np.pad(np.kron(ids, square), ((0, gap), (0, gap)))
 
 
 def discs(shape, centres, radius):
@@ -60,14 +57,9 @@ def save_mask(path, mask):
 def png_of(width, height, depth, colour_type, lines, palette=b""):
     """A PNG of packed lines, each with its filter before it; there may be fewer than it says."""
     header = struct.pack(">IIBBBBB", width, height, depth, colour_type, 0, 0, 0)
-    chunks = [
-        (b"IHDR", header),
-        (b"PLTE", palette),
-        (b"IDAT", zlib.compress(lines)),
-        (b"IEND", b""),
-    ]
+    chunks = {b"IHDR": header, b"PLTE": palette, b"IDAT": zlib.compress(lines), b"IEND": b""}
     return b"\x89PNG\r\n\x1a\n" + b"".join(
         struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-        for kind, data in chunks
+        for kind, data in chunks.items()
         if data or kind != b"PLTE"
     )

@@ -20,16 +20,13 @@ class _Quiet(SimpleHTTPRequestHandler):
 
 def toy_set():
     """Return a set of two small files."""
-    return PublishedSet(
-        "stones to play with",
-        "Nobody (2000)",
-        tuple(
-            PublishedFile(
-                name, f"{COMMIT}/Tests/{Path(name).stem}/labels.png", sha256(contents).hexdigest()
-            )
-            for name, contents in CONTENTS.items()
-        ),
+    files = (
+        PublishedFile(
+            name, f"{COMMIT}/Tests/{Path(name).stem}/labels.png", sha256(data).hexdigest()
+        )
+        for name, data in CONTENTS.items()
     )
+    return PublishedSet("stones to play with", "Nobody (2000)", tuple(files))
 
 
 def lay_open(root):

@@ -1,7 +1,6 @@
 """labelme, COCO, SAM and GeoJSON: pixels, run lengths and numbers of the known stones."""
 
 import base64
-import io
 import json
 from dataclasses import replace
 
@@ -10,7 +9,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
-from PIL import Image
 from pycocotools import mask as coco_mask
 
 from drystone.errors import InputError, UsageError
@@ -21,15 +19,22 @@ from tests.io import labelled
 from tests.io.known_stones import HEIGHT, PIECES, STONES, WIDTH, close, compare, masks
 from tests.io.labelled import box
 from tests.io.pictures import codes, said
+from tests.io.test_formats import pillow
 
 EXACT = (1.0, 0.0, 0.0)
 """Every pixel the same: outlines and truth both take the centres of pixels."""
+
+LARGEST = ReadSettings(pieces="keep-largest")
 
 
 def written(tmp_path, content, name="stones.json"):
     path = tmp_path / name
     path.write_text(json.dumps(content))
     return path
+
+
+def read(tmp_path, content, settings=PIECES, name="stones.json"):
+    return read_stones(written(tmp_path, content, name), settings=settings)
 
 
 def labelme(**changes):
@@ -68,51 +73,43 @@ def flat_polygons():
     return {i: [np.ravel(p[0]).tolist() for p in polygons] for i, polygons in STONES.items()}
 
 
-def test_labelme_keeps_labels_as_ids_and_joins_groups(tmp_path):
-    stones = read_stones(written(tmp_path, labelme()), settings=ReadSettings(pieces="keep-largest"))
-    assert compare(stones, ReadSettings(pieces="keep-largest")) == EXACT
+@pytest.mark.parametrize("form", ["labelme", "coco"])
+def test_labels_are_kept_as_ids_and_groups_joined(tmp_path, form):
+    content = labelme() if form == "labelme" else coco(flat_polygons())
+    stones = read(tmp_path, content, LARGEST)
+    assert compare(stones, LARGEST) == EXACT
     assert (stones.source.width_px, stones.source.height_px) == (WIDTH, HEIGHT)
-    assert stones.by_id(300).name == "300"
+    assert form == "coco" or stones.by_id(300).name == "300"
     assert stones.source.px_per_m is None
     assert "W119" not in codes(stones)  # stones that touch share no pixel
 
 
 def test_labelme_rectangles_circles_and_masks(tmp_path):
     grain = np.random.default_rng(3).random((20, 30)) < 0.9
-    Image.fromarray(grain).save(buffer := io.BytesIO(), "PNG")
+    corners = [[10, 130], [40, 110], [60, 140], [30, 160]]
     shapes = [
         {"label": "a", "shape_type": "rectangle", "points": [[60, 50], [10, 20]]},
         {"label": "b", "shape_type": "circle", "points": [[120, 60], [120, 90]]},
         {"label": "c", "shape_type": "mask", "points": [[200, 40], [229, 59]],
-         "mask": base64.b64encode(buffer.getvalue()).decode()},
+         "mask": base64.b64encode(pillow(grain, "PNG")).decode()},
+        # As X-AnyLabeling writes them.
+        {"label": "e", "shape_type": "rectangle", "direction": 5.7, "points": corners},
+        {"label": "f", "shape_type": "rotation", "direction": 5.7,
+         "points": [[x + 100, y] for x, y in corners]},
         {"label": "d", "shape_type": "line", "points": [[0, 0], [9, 9]]},
         {"label": "d", "shape_type": "point", "points": [[0, 0]]},
     ]  # fmt: skip
-    path = written(tmp_path, labelme(shapes=shapes))
-    stones = read_stones(path, settings=PIECES)
-    assert [(stone.id, stone.name) for stone in stones] == [(1, "a"), (2, "b"), (3, "c")]
+    stones = read(tmp_path, labelme(shapes=shapes))
+    assert [(stone.id, stone.name) for stone in stones] == [*enumerate("abcef", start=1)]
     assert stones.by_id(1).area_px == 50 * 30
     assert stones.by_id(2).area_px == pytest.approx(np.pi * 30**2, rel=0.003)
     assert stones.by_id(2).centroid == pytest.approx((120, HEIGHT - 60))
     assert stones.by_id(3).area_px == pytest.approx(int(grain.sum()), abs=2)  # less lone pixels
+    for i, x in ((4, 35), (5, 135)):
+        assert stones.by_id(i).area_px == pytest.approx(30**2 + 20**2, rel=0.01)
+        assert stones.by_id(i).centroid == pytest.approx((x, HEIGHT - 135), abs=0.1)
     assert (stones.by_id(3).left_px, stones.by_id(3).bottom_px) == (200, HEIGHT - 60)
     assert "1 lines, 1 points" in stones.notices[0].message
-
-
-@pytest.mark.parametrize("kind", ["rectangle", "rotation"])
-def test_rectangles_of_four_corners_as_x_anylabeling_writes_them(tmp_path, kind):
-    corners = [[10, 30], [40, 10], [60, 40], [30, 60]]
-    shape = {"label": "a", "shape_type": kind, "direction": 5.7, "points": corners}
-    (stone,) = read_stones(written(tmp_path, labelme(shapes=[shape])))
-    assert stone.area_px == pytest.approx(30**2 + 20**2, rel=0.01)
-    assert stone.centroid == pytest.approx((35, HEIGHT - 35), abs=0.1)
-
-
-def test_coco_polygons(tmp_path):
-    settings = ReadSettings(pieces="keep-largest")
-    stones = read_stones(written(tmp_path, coco(flat_polygons())), settings=settings)
-    assert compare(stones, settings) == EXACT
-    assert (stones.source.width_px, stones.source.height_px) == (WIDTH, HEIGHT)
 
 
 def test_coco_of_several_images_needs_a_name(tmp_path):
@@ -121,16 +118,14 @@ def test_coco_of_several_images_needs_a_name(tmp_path):
     content["annotations"].append(
         {"id": 1, "image_id": 9, "segmentation": [[5, 5, 45, 5, 45, 55, 5, 55]]}
     )
-    path = written(tmp_path, content)
-    with pytest.raises(InputError, match=r"E115.*2 images.*--image.*a/photo.jpg, other.jpg"):
-        read_stones(path)
+    for name, text in ((None, r"2 images.*--image.*a/photo.jpg, other.jpg"), ("third", "'third'")):
+        with pytest.raises(InputError, match=rf"E115.*{text}"):
+            read(tmp_path, content, ReadSettings(image=name))
     for name in ("photo.jpg", "a/photo.jpg", "7"):
-        assert compare(read_stones(path, settings=replace(PIECES, image=name))) == EXACT
-    other = read_stones(path, settings=ReadSettings(image="other.jpg"))
+        assert compare(read(tmp_path, content, replace(PIECES, image=name))) == EXACT
+    other = read(tmp_path, content, ReadSettings(image="other.jpg"))
     assert [(stone.id, stone.area_px) for stone in other] == [(1, 2000)]
     assert dict(other.source.reading) == {"image": "other.jpg"}
-    with pytest.raises(InputError, match=r"E115.*'third.jpg'"):
-        read_stones(path, settings=ReadSettings(image="third.jpg"))
 
 
 def test_coco_says_what_has_no_outline(tmp_path):
@@ -139,12 +134,10 @@ def test_coco_says_what_has_no_outline(tmp_path):
         {"id": 900, "image_id": 7, "iscrowd": 1, "segmentation": runs(masks()[3])},
         {"id": 901, "image_id": 7, "bbox": [1, 1, 5, 5], "segmentation": []},
     ]
-    stones = read_stones(written(tmp_path, content), settings=PIECES)
+    stones = read(tmp_path, content)
     assert {900, 901}.isdisjoint(stone.id for stone in stones)
     assert "1 annotations without an outline, 1 crowd regions" in said(stones)
-    found = read_stones(
-        written(tmp_path, [{"segmentation": runs(masks()[3])}, {"segmentation": []}])
-    )
+    found = read(tmp_path, [{"segmentation": runs(masks()[3])}, {"segmentation": []}])
     assert [stone.id for stone in found] == [1]
     assert "1 annotations without an outline" in said(found)
 
@@ -159,7 +152,7 @@ def test_coco_masks_of_cvat_are_stones_though_marked_as_crowds(tmp_path, mixed):
         content["annotations"][0] |= {"iscrowd": 0, "segmentation": flat_polygons()[3]}
         for annotation in content["annotations"]:
             annotation["attributes"] = {"occluded": False}
-    stones = read_stones(written(tmp_path, content), settings=PIECES)
+    stones = read(tmp_path, content)
     assert {stone.id for stone in stones} == set(STONES)
     assert stones.by_id(5).area_px == masks()[5].sum()
     assert "marked as crowds" in stones.notices[0].message
@@ -170,21 +163,19 @@ def test_sam_masks_that_do_not_nest(tmp_path, form):
     ids = {stone: number for number, stone in enumerate(STONES, start=1)}
     content = [
         {"segmentation": mask.tolist() if form == "rows" else runs(mask, packed=form != "counts"),
-         "predicted_iou": 0.97}
-        for mask in masks().values()
+         "predicted_iou": 0.97, "id": stone}
+        for stone, mask in masks().items()
     ]  # fmt: skip
     if form == "released":
-        ids = {stone: stone for stone in STONES}
-        found = [one | {"id": stone} for one, stone in zip(content, STONES, strict=True)]
-        content = {"image": {"width": WIDTH, "height": HEIGHT}, "annotations": found}
-    stones = read_stones(written(tmp_path, content), settings=PIECES)
-    assert compare(stones, ids=ids) == EXACT
+        ids = None
+        content = {"image": {"width": WIDTH, "height": HEIGHT}, "annotations": content}
+    assert compare(read(tmp_path, content), ids=ids) == EXACT
 
 
 def test_outlines_that_overlap_or_reach_over_the_image(tmp_path):
     corners = {1: box(10, 10, 60, 60), 2: box(50, 10, 90, 60), 3: box(-5, 70, 20, 120)}
     shapes = [{"label": str(i), "points": points} for i, points in corners.items()]
-    stones = read_stones(written(tmp_path, labelme(shapes=shapes)))
+    stones = read(tmp_path, labelme(shapes=shapes))
     assert [stone.area_px for stone in stones] == [2500, 2000, 20 * 50]
     assert stones.by_id(3).left_px == 0
     assert "1 and 2 (500 px)" in said(stones)
@@ -204,42 +195,32 @@ def geojson(at=np.array, **changes):
     return {"type": "FeatureCollection", "features": features} | changes
 
 
-@pytest.mark.parametrize("name", ["stones.geojson", "stones.json"])
-def test_geojson_in_px_of_an_image(tmp_path, name):
-    stones = read_stones(written(tmp_path, geojson(), name), settings=PIECES)
-    assert compare(stones) == EXACT
-    assert stones.by_id(8).name == "block 8"
-    assert stones.by_id(8).area_px == masks()[8].sum()
-    assert stones.source.px_per_m is None
-    assert stones.source.height_px == 168  # the lowest stone ends at y = 168
-
-
-def test_geojson_of_a_map_is_never_taken_for_a_picture(tmp_path):
+def test_geojson_in_px_of_an_image_or_of_a_map(tmp_path):
+    for name in ("stones.geojson", "stones.json"):
+        stones = read(tmp_path, geojson(), name=name)
+        assert compare(stones) == EXACT
+        assert stones.by_id(8).name == "block 8"
+        assert stones.by_id(8).area_px == masks()[8].sum()
+        assert stones.source.px_per_m is None
+        assert stones.source.height_px == 168  # the lowest stone ends at y = 168
     crs = {"type": "name", "properties": {"name": "urn:ogc:def:crs:EPSG::25832"}}
-    path = written(tmp_path, geojson(crs=crs))
     with pytest.raises(InputError, match=r"E116.*a map.*--unit m"):
-        read_stones(path, settings=PIECES)
-    assert read_stones(path, settings=replace(PIECES, unit="m")).source.px_per_m
-    assert compare(read_stones(path, settings=replace(PIECES, unit="px"))) == EXACT
+        read(tmp_path, geojson(crs=crs))
+    assert read(tmp_path, geojson(crs=crs), replace(PIECES, unit="m")).source.px_per_m
+    assert compare(read(tmp_path, geojson(crs=crs), replace(PIECES, unit="px"))) == EXACT
 
 
-def test_geojson_in_metres_has_y_up_and_a_scale(tmp_path):
+def test_geojson_in_metres_has_y_up_and_a_scale_and_some_kinds_are_no_stones(tmp_path):
     content = geojson(lambda ring: (np.array(ring) * (1, -1) + (0, HEIGHT)) / 400, unit="m")
-    stones = read_stones(written(tmp_path, content), settings=replace(PIECES, px_per_m=400.0))
+    for geometry in ({"type": "Point", "coordinates": [1, 2]}, None):
+        content["features"].append({"type": "Feature", "properties": None, "geometry": geometry})
+    stones = read(tmp_path, content, replace(PIECES, px_per_m=400.0))
     assert stones.source.px_per_m == 400.0
     assert dict(stones.source.reading)["px_per_m"] == 400.0
     close(stones)
-
-
-def test_geojson_kinds_that_are_no_stones(tmp_path):
-    content = geojson()
-    point = {"type": "Point", "coordinates": [1, 2]}
-    for geometry in (point, None):
-        content["features"].append({"type": "Feature", "properties": None, "geometry": geometry})
-    stones = read_stones(written(tmp_path, content), settings=PIECES)
     assert "1 Points, 1 features without a geometry" in stones.notices[0].message
     bare = geojson()["features"][0]["geometry"]
-    assert read_stones(written(tmp_path, bare)).by_id(1).area_px == masks()[3].sum()
+    assert read(tmp_path, bare).by_id(1).area_px == masks()[3].sum()
 
 
 @given(arrays(bool, st.tuples(st.integers(1, 40), st.integers(1, 40))), st.booleans())
@@ -267,9 +248,8 @@ def test_long_runs_come_back(height, width, data):
     assert mask_of(packed, Room(10**8)).mask.sum() == run
 
 
-@pytest.mark.parametrize(
-    ("said", "text"),
-    [
+def test_damaged_counts_and_sizes():
+    for changes, text in (
         ({"counts": [1, 2]}, "add up to 3"),
         ({"counts": [-1, 7]}, "below 0"),
         ({"counts": [1.5, 4.5]}, "whole numbers"),
@@ -278,62 +258,43 @@ def test_long_runs_come_back(height, width, data):
         ({"counts": "P"}, "cut short"),
         ({"counts": [[6]]}, "whole numbers"),
         ({"counts": [6], "size": [3, -2]}, "a picture of -2 x 3 px"),
-    ],
-)
-def test_damaged_counts_and_sizes(said, text):
-    with pytest.raises(ValueError, match=text):
-        mask_of({"size": [2, 3], **said}, Room(10**8))
+    ):
+        with pytest.raises(ValueError, match=text):
+            mask_of({"size": [2, 3], **changes}, Room(10**8))
 
 
 SQUARES = [box(x, 10, x + 20, 30) for x in (10, 40, 70)]
-
-
-def of_coco(ids):
-    flat = [{"segmentation": [np.ravel(square).tolist()]} for square in SQUARES]
-    found = [{"id": i, "image_id": 7} | s for i, s in zip(ids, flat, strict=False)]
-    return coco({}, annotations=found)
-
-
-def of_labelme(labels):
-    shapes = [{"label": i, "points": s} for i, s in zip(labels, SQUARES, strict=False)]
-    return labelme(shapes=shapes)
-
-
-def read(tmp_path, content):
-    stones = read_stones(written(tmp_path, content))
-    return [stone.id for stone in stones], [n.message for n in stones.notices if n.code == "W119"]
+AGAIN = "all are numbered in order"
 
 
 @pytest.mark.parametrize(
-    ("content", "said"),
+    ("form", "given", "ids", "said"),
     [
-        (of_coco([0, 1, 2]), "0 cannot be the number of a stone: all are numbered in order "
+        ("coco", [0, 1, 2], [1, 2, 3], f"0 cannot be the number of a stone: {AGAIN} "
          "(0 is now 1, 1 is now 2, 2 is now 3)."),
-        (of_coco([5, 2**32, None]), "4294967296 cannot be the number of a stone, 1 of 3 stones "
-         "without a number: all are numbered in order (5 is now 1, 4294967296 is now 2)."),
-        (of_labelme(["5", "5", "Stone A"]), "the numbers of the file are not different (5), "
-         "1 of 3 stones without a number: all are numbered in order."),
+        ("coco", [5, 2**32, None], [1, 2, 3], "4294967296 cannot be the number of a stone, 1 of 3 "
+         f"stones without a number: {AGAIN} (5 is now 1, 4294967296 is now 2)."),
+        ("labelme", ["5", "5", "Stone A"], [1, 2, 3], "the numbers of the file are not different "
+         f"(5), 1 of 3 stones without a number: {AGAIN}."),
+        ("coco", [1, 2, 3], [1, 2, 3], None),
+        ("coco", [7, 2**32 - 1, 3], [3, 7, 2**32 - 1], None),
+        ("coco", [None, None, None], [1, 2, 3], None),
+        ("labelme", ["a", "b", "c"], [1, 2, 3], None),
+        ("labelme", ["0", "0", "0"], [1, 2, 3], None),  # labels of a class
+        ("labelme", ["stone 9", "8", "07"], [7, 8, 9], None),
     ],
 )  # fmt: skip
-def test_numbers_that_are_not_kept_are_said(tmp_path, content, said):
-    ids, messages = read(tmp_path, content)
-    assert ids == list(range(1, len(ids) + 1))
-    assert messages == [said]
-
-
-@pytest.mark.parametrize(
-    ("content", "ids"),
-    [
-        (of_coco([1, 2, 3]), [1, 2, 3]),
-        (of_coco([7, 2**32 - 1, 3]), [3, 7, 2**32 - 1]),
-        (of_coco([None, None, None]), [1, 2, 3]),
-        (of_labelme(["a", "b", "c"]), [1, 2, 3]),
-        (of_labelme(["0", "0", "0"]), [1, 2, 3]),  # labels of a class
-        (of_labelme(["stone 9", "8", "07"]), [7, 8, 9]),
-    ],
-)
-def test_numbers_that_are_kept_or_were_never_there_are_not_spoken_of(tmp_path, content, ids):
-    assert read(tmp_path, content) == (ids, [])
+def test_numbers_are_kept_or_it_is_said_that_they_are_not(tmp_path, form, given, ids, said):
+    pairs = list(zip(given, SQUARES, strict=True))
+    if form == "coco":
+        found = [{"id": i, "image_id": 7, "segmentation": [np.ravel(s).tolist()]} for i, s in pairs]
+        content = coco({}, annotations=found)
+    else:
+        content = labelme(shapes=[{"label": i, "points": s} for i, s in pairs])
+    stones = read(tmp_path, content, ReadSettings())
+    assert [stone.id for stone in stones] == ids
+    told = [notice.message for notice in stones.notices if notice.code == "W119"]
+    assert told == ([] if said is None else [said])
 
 
 @pytest.mark.parametrize("form", ["labelme", "coco", "sam", "qupath", "svg", "npz"])
@@ -344,12 +305,11 @@ def test_outlines_say_themselves_what_is_stone(tmp_path, form):
         path = written(tmp_path, [{"segmentation": [[1, 1, 30, 1, 30, 30]]}])
     else:
         path = labelled.written(tmp_path, form, [("stone", ring) for ring in labelled.stones()])
-    plain = ReadSettings(pieces="keep-largest")
     for option, value in (("background", 255), ("mask", True), ("no-mask", False)):
         key = option.removeprefix("no-")
         cure = rf"Leave --{option} \({key} in Python\) out"
         with pytest.raises(UsageError, match=rf"E118 {path.name}: this file says itself.*{cure}"):
-            read_stones(path, settings=replace(plain, **{key: value}))
+            read_stones(path, settings=replace(LARGEST, **{key: value}))
     # What is left of the options is for both.
-    also = replace(plain, holes="keep", min_area_px=1, skip=(99,))
+    also = replace(LARGEST, holes="keep", min_area_px=1, skip=(99,))
     assert len(read_stones(path, settings=also)) >= 1

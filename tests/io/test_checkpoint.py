@@ -1,12 +1,23 @@
-"""A search goes on from a file to the walls that it would have found; a bad file is refused."""
+"""A search goes on from a file, in a folder where one run at a time works."""
 
-from dataclasses import replace
+import errno
+import json
+import math
+import subprocess
+import sys
+from dataclasses import dataclass, replace
+from typing import Literal
 
+import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
-from drystone.errors import PlanError
-from drystone.io import checkpoint
+from drystone.errors import PlanError, UsageError
+from drystone.io import checkpoint, folder_lock
 from drystone.io.checkpoint import CHECKPOINT, Checkpoint, read_checkpoint, write_checkpoint
+from drystone.io.folder_lock import LOCK, has_files, locked
+from drystone.io.json_text import as_json, from_plain
 from drystone.model.site import Site
 from drystone.planner.planner import Planner
 from drystone.search.anytime import searching
@@ -14,6 +25,7 @@ from drystone.search.goal import FoundWall
 from drystone.search.whole_search import run_to_end
 from drystone.search.yard import Yard
 from tests.planner.scenes import WITH_WEDGES, few_stones, finish, greedy
+from tests.strategies import repeatable
 
 FEW_SITE = Site(90, 30)
 SMALL = {"budget": 9, "passes": 3, "chains": 2, "share_every": 2, "cycle": 3}
@@ -22,10 +34,6 @@ SMALL = {"budget": 9, "passes": 3, "chains": 2, "share_every": 2, "cycle": 3}
 def searched(planner, start=None):
     begin = start or FoundWall.of(planner)
     return list(searching(begin, Yard.of(planner), planner.seed))
-
-
-def states_of(found):
-    return [one.state for one in found if one.state is not None]
 
 
 def again(state, folder, planner):
@@ -42,18 +50,18 @@ def test_a_search_goes_on_from_a_file_to_the_same_walls(tmp_path):
     stones, settings = few_stones(), greedy({"geometry": "exact", **WITH_WEDGES, "search": SMALL})
     planner = finish(Planner(stones, FEW_SITE, seed=2, settings=settings))
     whole = searched(planner)
-    stood = states_of(whole)
+    stood = [one.state for one in whole if one.state is not None]
     assert [one.walls for one in stood] == [2, 3, 5, 7, 9]
     assert any(group.wedges for wall in whole[-1].kept for group in wall.groups)
     for state in stood[:-1:3]:
         read = again(state, tmp_path, planner)
         found = searched(planner, read)
-        assert found[-1].walls == whole[-1].walls
-        assert found[-1].best.groups == whole[-1].best.groups
-        assert found[-1].solves == whole[-1].solves
-        assert [(w.groups, w.figures, w.merit, w.courses) for w in found[-1].kept] == [
-            (w.groups, w.figures, w.merit, w.courses) for w in whole[-1].kept
-        ]
+        ends = [
+            (one.walls, one.solves, one.best.groups,
+             [(w.groups, w.figures, w.merit, w.courses) for w in one.kept])
+            for one in (found[-1], whole[-1])
+        ]  # fmt: skip
+        assert ends[0] == ends[1]
         first = (tmp_path / CHECKPOINT).read_bytes()
         again(read, tmp_path, planner)
         assert (tmp_path / CHECKPOINT).read_bytes() == first
@@ -88,70 +96,56 @@ def refused(folder, planner, ids=None):
     return caught.value.what
 
 
-@pytest.mark.parametrize(
-    "damage",
-    [
-        lambda data: data[:0],
-        lambda data: data[: len(data) // 2],
-        lambda data: data.replace(b'"number":1', b'"number":2', 1),
-        lambda data: data.replace(b"{", b"[", 1),
-        lambda _: b"\xff\xfe",
-        lambda _: b"[]",
-        lambda _: b'{"sha256": 1, "data": {}}',
-        lambda _: b'{"sha256": "", "data": ' + b"9" * 5000 + b"}",
-    ],
-)
-def test_a_damaged_file_is_refused(damage, stood, tmp_path):
-    state, planner = stood
-    again(state, tmp_path, planner)
-    path = tmp_path / CHECKPOINT
-    whole = path.read_bytes()
-    path.write_bytes(damage(whole))
-    assert path.read_bytes() != whole
-    assert refused(tmp_path, planner)
-
-
-def test_a_file_that_is_too_large_or_of_another_version_is_refused(stood, tmp_path, monkeypatch):
+def test_a_damaged_file_or_one_of_another_version_or_other_stones_is_refused(
+    stood, tmp_path, monkeypatch
+):
     state, planner = stood
     with monkeypatch.context() as patch:
         patch.setattr(checkpoint, "version", lambda _: "0.0.1")
         again(state, tmp_path, planner)
     assert "of drystone 0.0.1" in refused(tmp_path, planner)
     again(state, tmp_path, planner)
-    monkeypatch.setattr(checkpoint, "LARGEST_BYTES", 1000)
-    assert "too large" in refused(tmp_path, planner)
+    assert "other stones" in refused(tmp_path, planner, ids=[1, 2])
+    with monkeypatch.context() as patch:
+        patch.setattr(checkpoint, "LARGEST_BYTES", 1000)
+        assert "too large" in refused(tmp_path, planner)
+    whole = (tmp_path / CHECKPOINT).read_bytes()
+    for damaged in (
+        b"",
+        whole[: len(whole) // 2],
+        whole.replace(b'"number":1', b'"number":2', 1),
+        whole.replace(b"{", b"[", 1),
+        b"\xff\xfe",
+        b"[]",
+        b'{"sha256": 1, "data": {}}',
+        b'{"sha256": "", "data": ' + b"9" * 5000 + b"}",
+    ):
+        assert damaged != whole
+        (tmp_path / CHECKPOINT).write_bytes(damaged)
+        assert refused(tmp_path, planner)
 
 
-CHANGES = {
-    "rounds": lambda one: replace(one, number=0),
-    "round": lambda one: replace(one, before=None),
-    "first": lambda one: replace(one, chains=None),
-    "both": lambda one: replace(one, found=one.chains.reached.kept),
-    "links": lambda one: replace(one, chains=replace(one.chains, links=())),
-    "turn": lambda one: replace(one, chains=replace(one.chains, turn=3)),
-    "ends": lambda one: with_best(one, ends=(0, 99)),
-    "order": lambda one: with_best(one, ends=(3, 1)),
-}
-
-
-def with_best(state, ends):
+def test_a_search_that_cannot_be_is_refused(stood, tmp_path):
+    state, planner = stood
     chains = state.chains
     planned = next(w for w in chains.reached.kept if w.courses is not None)
-    wall = replace(planned, courses=replace(planned.courses, ends=ends))
-    return replace(state, chains=replace(chains, reached=replace(chains.reached, best=wall)))
 
+    def with_best(ends):
+        wall = replace(planned, courses=replace(planned.courses, ends=ends))
+        return replace(state, chains=replace(chains, reached=replace(chains.reached, best=wall)))
 
-@pytest.mark.parametrize("change", CHANGES)
-def test_a_search_that_cannot_be_is_refused(change, stood, tmp_path):
-    state, planner = stood
-    write_checkpoint(Checkpoint({}, CHANGES[change](state)), tmp_path)
-    assert refused(tmp_path, planner)
-
-
-def test_a_search_of_other_stones_is_refused(stood, tmp_path):
-    state, planner = stood
-    write_checkpoint(Checkpoint({}, state), tmp_path)
-    assert "other stones" in refused(tmp_path, planner, ids=[1, 2])
+    for wrong in (
+        replace(state, number=0),
+        replace(state, before=None),
+        replace(state, chains=None),
+        replace(state, found=chains.reached.kept),
+        replace(state, chains=replace(chains, links=())),
+        replace(state, chains=replace(chains, turn=3)),
+        with_best((0, 99)),
+        with_best((3, 1)),
+    ):
+        write_checkpoint(Checkpoint({}, wrong), tmp_path)
+        assert refused(tmp_path, planner)
 
 
 def test_a_forged_search_whose_walls_do_not_stand_has_a_code(stood):
@@ -166,3 +160,137 @@ def test_a_forged_search_whose_walls_do_not_stand_has_a_code(stood):
     start = Planner(planner.workshop.stones, planner.workshop.site, settings=settings)
     with pytest.raises(PlanError, match="E207"):
         run_to_end(start, start=forged)
+
+
+@dataclass(frozen=True)
+class Inner:
+    side: Literal["left", "right"]
+    place: tuple[int, int] | tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Outer:
+    name: str
+    count: int
+    share: float
+    sure: bool
+    maybe: Inner | None
+    many: tuple[Inner, ...]
+
+
+ONE = Outer("a", 1, 0.1, True, None, (Inner("left", (1, 2)), Inner("right", (1.0, 2.5))))
+
+
+@repeatable(30)
+@given(st.floats(allow_nan=False), st.integers(), st.text())
+def test_values_are_the_same_again(share, count, name):
+    value = Outer(name, count, share, False, Inner("left", (share, -share)), ONE.many)
+    found = from_plain(Outer, json.loads(as_json(value)))
+    assert found == value
+    assert math.copysign(1.0, found.share) == math.copysign(1.0, share)
+    assert [type(one.place[0]) for one in found.many] == [int, float]
+    assert as_json(Inner("left", (np.int64(3), np.float64(4)))) == '{"side":"left","place":[3,4.0]}'
+
+
+def test_what_is_of_another_type_is_refused():
+    for change in (
+        {"name": 3}, {"count": 1.0}, {"share": True}, {"share": float("nan")}, {"share": 10**400},
+        {"sure": 1}, {"maybe": {"side": "left"}}, {"maybe": {"side": ["left"], "place": [1, 2]}},
+        {"maybe": {"side": "left", "place": [1, 2, 3]}},
+        {"maybe": {"side": "left", "place": {"0": 1, "1": 2}}}, {"many": [None]}, {"more": 1},
+    ):  # fmt: skip
+        data = json.loads(as_json(ONE)) | change
+        with pytest.raises(ValueError, match=r"this is no|is not of type"):
+            from_plain(Outer, data)
+        data = json.loads(as_json(ONE))
+        del data[next(iter(change.keys() & data.keys()), "name")]
+        with pytest.raises(ValueError, match="this is not of type Outer"):
+            from_plain(Outer, data)
+
+
+HOLDING = """
+import sys, time
+from pathlib import Path
+from drystone.io.folder_lock import locked
+
+with locked(Path(sys.argv[1])):
+    print("locked", flush=True)
+    time.sleep(1000)
+"""
+
+
+def enter(folder):
+    with locked(folder):
+        assert (folder / LOCK).exists()
+
+
+def test_a_second_run_is_refused_until_the_first_has_ended(tmp_path):
+    with locked(tmp_path):
+        for _ in range(2):
+            with pytest.raises(UsageError, match="E149") as caught:
+                enter(tmp_path)
+            assert caught.value.where == str(tmp_path)
+    for _ in range(2):
+        assert list(tmp_path.iterdir()) == []
+        enter(tmp_path)
+
+
+def test_a_lock_ends_with_its_process(tmp_path):
+    command = [sys.executable, "-c", HOLDING, str(tmp_path)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as other:  # noqa: S603
+        assert other.stdout.readline() == "locked\n"
+        with pytest.raises(UsageError, match="E149"):
+            enter(tmp_path)
+        other.kill()
+        other.wait()
+    assert (tmp_path / LOCK).exists()
+    assert not has_files(tmp_path)
+    enter(tmp_path)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_what_a_killed_run_was_writing_goes(tmp_path):
+    part = f".plan.json.{32 * 'a'}.part"
+    ours, other = tmp_path / "pareto" / "01", tmp_path / "another run"
+    for place in (tmp_path, ours, other):
+        place.mkdir(parents=True, exist_ok=True)
+        (place / part).write_bytes(b"half")
+        (place / "mine.part").write_bytes(b"whole")
+    with locked(tmp_path, "pareto/*/"):
+        left = {path.parent for path in tmp_path.rglob(part)}
+    assert left == {other}
+    assert len(list(tmp_path.rglob("mine.part"))) == 3
+
+
+def test_a_lock_that_is_removed_while_it_is_taken_is_taken_again(tmp_path, monkeypatch):
+    """As by a run that ends just then."""
+    taken, calls = folder_lock._lock, []
+
+    def late(file):
+        if not calls:
+            (tmp_path / LOCK).unlink()
+        elif len(calls) == 1:
+            (tmp_path / LOCK).unlink()
+            (tmp_path / LOCK).write_bytes(b"")
+        calls.append(file)
+        taken(file)
+
+    monkeypatch.setattr(folder_lock, "_lock", late)
+    with locked(tmp_path):
+        assert len(calls) == 3
+        monkeypatch.undo()
+        with pytest.raises(UsageError, match="E149"):
+            enter(tmp_path)
+
+
+def test_where_there_are_no_locks_there_is_none_or_a_code(tmp_path, monkeypatch):
+    def unknown(_):
+        raise OSError(errno.ENOLCK, "No locks available")
+
+    monkeypatch.setattr(folder_lock, "_lock", unknown)
+    with locked(tmp_path):
+        enter(tmp_path)
+    assert list(tmp_path.iterdir()) == []
+    (tmp_path / LOCK).mkdir()  # which cannot be written
+    with pytest.raises(PlanError, match="E206"):
+        enter(tmp_path)

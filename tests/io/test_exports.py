@@ -1,13 +1,26 @@
-"""Further forms of labelling tools, and instances of nesting programs."""
+"""Further forms of labelling tools and nesting programs, and the codes of damaged files."""
+
+import base64
+import json
+import sys
 
 import numpy as np
 import pytest
 from PIL import Image
 
-from drystone.errors import InputError
+from drystone.errors import InputError, UsageError
 from drystone.io.read_stones import ReadSettings, read_stones
+from tests.io.known_stones import masks
 from tests.io.labelled import HEIGHT, SIZE, WIDTH, box, stones, written
-from tests.io.test_outline_errors import read
+from tests.io.test_annotations import coco, geojson, labelme, runs
+from tests.io.test_formats import pillow
+
+
+def read(tmp_path, content, name="stones.json", **settings):
+    text = content if isinstance(content, str) else json.dumps(content)
+    (tmp_path / name).write_text(text)
+    return read_stones(tmp_path / name, settings=ReadSettings(**settings))
+
 
 PER_CENT = {"x": 25.0, "y": 25.0}  # 90, 65
 
@@ -21,20 +34,19 @@ def result(value, kind="rectanglelabels", **more):
     return {"type": kind, "value": value | {kind: ["stone"]}} | SIZE | more
 
 
-@pytest.mark.parametrize(
-    ("value", "area", "centre"),
-    [
-        (PER_CENT | {"width": 20.0, "height": 10.0, "rotation": 0}, 72 * 26, (126, 78)),
-        (PER_CENT | {"width": 20.0, "height": 10.0, "rotation": 90}, 72 * 26, (77, 101)),
-        (PER_CENT | {"radiusX": 10.0, "radiusY": 5.0, "rotation": 30}, np.pi * 36 * 13, (90, 65)),
-    ],
-)
-def test_boxes_and_ellipses_of_label_studio(tmp_path, value, area, centre):
-    kind = "ellipselabels" if "radiusX" in value else "rectanglelabels"
-    (stone,) = read(tmp_path, [task(result(value, kind))])
-    assert stone.area_px == pytest.approx(area, rel=0.01)
-    x, y = stone.centroid
-    assert (x, HEIGHT - y) == pytest.approx(centre, abs=0.5)
+def test_boxes_and_ellipses_of_label_studio(tmp_path):
+    flat = {"width": 20.0, "height": 10.0}
+    ellipse = {"radiusX": 10.0, "radiusY": 5.0, "rotation": 30}
+    for more, area, centre in (
+        (flat | {"rotation": 0}, 72 * 26, (126, 78)),
+        (flat | {"rotation": 90}, 72 * 26, (77, 101)),
+        (ellipse, np.pi * 36 * 13, (90, 65)),
+    ):
+        kind = "ellipselabels" if more is ellipse else "rectanglelabels"
+        (stone,) = read(tmp_path, [task(result(PER_CENT | more, kind))])
+        assert stone.area_px == pytest.approx(area, rel=0.01)
+        x, y = stone.centroid
+        assert (x, HEIGHT - y) == pytest.approx(centre, abs=0.5)
 
 
 def test_results_of_label_studio_that_are_no_outlines(tmp_path):
@@ -74,12 +86,8 @@ def test_shapes_of_via(tmp_path):
         {"name": "ellipse", "cx": 200, "cy": 40, "rx": 30, "ry": 10, "theta": 0.5},
         {"name": "point", "cx": 1, "cy": 2},
     ]
-    drawn = [{"shape_attributes": s, "region_attributes": {}} for s in shapes]
-    regions = {str(i): region for i, region in enumerate(drawn)}
-    images = {
-        "a9": {"filename": "a.jpg", "regions": regions},
-        "b9": {"filename": "b", "regions": []},
-    }
+    drawn = {str(i): {"shape_attributes": s, "region_attributes": {}} for i, s in enumerate(shapes)}
+    images = {"a9": {"filename": "a.jpg", "regions": drawn}, "b9": {"filename": "b", "regions": []}}
     found = read(tmp_path, images)
     truth = [1200, np.pi * 400, np.pi * 300]
     assert [stone.area_px for stone in found] == pytest.approx(truth, rel=0.02)
@@ -112,37 +120,32 @@ def test_shapes_of_cvat(tmp_path):
 @pytest.mark.parametrize("turned", [False, True])
 def test_segments_of_yolo_have_the_proportions_of_their_picture(tmp_path, turned):
     path = written(tmp_path, "yolo", [("stone", ring) for ring in stones()])
-    photo = tmp_path / "photo.jpg"
-    size = (HEIGHT, WIDTH) if turned else (WIDTH, HEIGHT)
-    exif = Image.Exif()
+    photo, exif = tmp_path / "photo.jpg", Image.Exif()
     exif[0x0112] = 6 if turned else 1
-    Image.new("L", size).save(photo, exif=exif)
+    Image.new("L", (HEIGHT, WIDTH) if turned else (WIDTH, HEIGHT)).save(photo, exif=exif)
+    path.write_text("0 .5 .5 .1 .1\n" + path.read_text())
     found = read_stones(path, settings=ReadSettings(image=str(photo)))
     assert (found.source.width_px, found.source.height_px) == (WIDTH, HEIGHT)
-    path.write_text("0 .5 .5 .1 .1\n" + path.read_text())
-    notice = read_stones(path, settings=ReadSettings(image=str(photo))).notices[0]
-    assert "1 boxes" in notice.message
+    assert "1 boxes" in found.notices[0].message
 
 
-def item(number, shape, demand=1):
+def item(number, kind, data, demand=1):
+    shape = {"type": kind, "data": data}
     return {"id": number, "demand": demand, "allowed_orientations": [0], "shape": shape}
-
-
-def polygon(ring):
-    return {"type": "simple_polygon", "data": [*ring, ring[0]]}
 
 
 def test_items_of_a_nesting_instance(tmp_path):
     content = {"name": "pile", "strip_height": 200}
-    laid = [item(i, polygon(ring)) for i, ring in enumerate(stones(), start=1)]
-    found = read(tmp_path, content | {"items": laid})
+    rings = [[*ring, ring[0]] for ring in (box(0, 0, 50, 40), *stones())]
+    laid = [item(i, "simple_polygon", ring) for i, ring in enumerate(rings)]
+    found = read(tmp_path, content | {"items": laid[1:]})
     assert [stone.id for stone in found] == list(range(1, 13))
     assert "taken as px" in found.notices[0].message
     hole = {"outer": box(0, 0, 60, 60), "inner": [box(20, 20, 40, 40)]}
     others = [
-        item(0, polygon(box(0, 0, 50, 40)), 3),
-        item(1, {"type": "polygon", "data": hole}),
-        item(2, {"type": "rectangle", "data": {"x_min": 0, "y_min": 0, "width": 9, "height": 30}}),
+        item(0, "simple_polygon", rings[0], 3),
+        item(1, "polygon", hole),
+        item(2, "rectangle", {"x_min": 0, "y_min": 0, "width": 9, "height": 30}),
     ]
     found = read(tmp_path, content | {"items": others}, holes="keep")
     assert [stone.area_px for stone in found] == [2000, 2000, 2000, 3200, 270]
@@ -153,22 +156,109 @@ def test_items_of_a_nesting_instance(tmp_path):
     assert "taken as px" not in str(found.notices)
 
 
-MASK = '<mask left="0" top="0" width="3" height="3" rle="1,2"/>'
-SIDELESS = {"name": "rect", "x": 1}
+def test_json_of_another_kind(tmp_path):
+    for content, text in (
+        ("{", r"cannot be read, it may be cut short"),
+        ({"type": ["object", "null"]}, r"its keys are 'type'"),
+        ({"a": 1, "b": 2}, r"its keys are 'a', 'b'.*labelme.*COCO.*SAM.*GeoJSON"),
+        ([{"bbox": [1, 2]}], r"none of the known forms"),
+        ({"schema": "drystone-photo/1", "px_per_m": 3}, r"beside the label image.*Give stones.png"),
+        ({"steps": [], "source": {}, "wall": {}}, r"is a plan.*Give the stones"),
+        ({"blocks": []}, r"block model of a wall"),
+    ):
+        with pytest.raises(InputError, match=rf"E113 stones.json: .*{text}"):
+            read(tmp_path, content)
+
+
+def shape(**changes):
+    return labelme(shapes=[{"label": "1", "points": box(1, 1, 30, 30)} | changes])
+
+
+def mask(picture, points=((1, 1), (30, 1))):
+    return shape(shape_type="mask", points=points, mask=picture)
+
+
+DOT = base64.b64encode(pillow(np.full((1, 1), 255, np.uint8), "PNG")).decode()
+"""A mask of one pixel."""
+
+NO_RING = {"type": "Feature", "properties": {}, "geometry": {"type": "Polygon", "coordinates": []}}
+RECT = {"name": "rect", "x": 1}
+CVAT = "<annotations><image>{}</image></annotations>"
+RUNS = '<mask left="0" top="0" width="3" height="3" rle="1,2"/>'
 
 
 @pytest.mark.parametrize(
-    ("name", "content", "text"),
+    ("content", "text"),
     [
-        ("a.json", {"items": [item(0, {"type": "spline", "data": []})]}, "item 0.*'spline'"),
-        ("a.json", {"a": {"regions": [{"shape_attributes": SIDELESS}]}}, "region 0.*'y'"),
-        ("a.json", [task(result(PER_CENT | {"width": "a", "height": 1}))], "result 0"),
-        ("a.json", [task({"value": {"points": [[1, 2]]}})], "result 0.*original_width"),
-        ("a.txt", "0 .1 .1 .2 .2 .3\n0 .1 .1 .2 .1 .2 .2 .4\n", "line 2.*odd number"),
-        ("a.xml", "<annotations><image><box/></image></annotations>", "shape 0.*'xtl'"),
-        ("a.xml", f"<annotations><image>{MASK}</image></annotations>", "shape 0.*do not fill"),
+        (shape(points=[*box(1, 1, 30, 30), ["a", 2]]), r"shape 0.*could not convert"),
+        (shape(points=[*box(1, 1, 30, 30), [float("nan"), 2]]), r"shape 0.*not finite"),
+        (shape(shape_type="circle", points=[[1, 2]]), r"shape 0"),
+        (mask("####"), r"shape 0"),
+        (mask("aGVsbG8="), r"shape 0.*not a picture"),
+        (mask(DOT, [[1e30, 0], [1e30, 9]]), r"shape 0.*beyond 1e9"),
+        (labelme(shapes=[{"label": "1"}]), r"shape 0.*has no 'points'"),
+        (coco({5: [[1, 1, 5]]}), r"annotation 5.*odd number"),
+        (coco({5: {"size": [3, 3], "counts": [0, 9]}}), r"the image.*sizes differ: 3 x 3, 320 x"),
+        (coco({}, annotations=[3]), r"annotations are not objects"),
+        (coco({}, categories=["stone"]), r"list of categories"),
+        (coco({}, annotations=[{"image_id": [7]}]), r"list of images"),
+        (labelme(imageWidth=0), r"size of the image.*is 0 px"),
+        ([{"segmentation": [[True, False], [True]]}], r"mask 1"),
+        ([{"segmentation": runs(masks()[3])}, {"segmentation": {"size": [3, 3], "counts": [9]}}],
+         r"the image.*sizes differ"),
+        (geojson(features=[NO_RING]), r"feature 0.*no ring"),
+        (geojson(features=None), r"list of features|feature"),
+        ({"items": [item(0, "spline", [])]}, "item 0.*'spline'"),
+        ({"a": {"regions": [{"shape_attributes": RECT}]}}, "region 0.*'y'"),
+        ([task(result(PER_CENT | {"width": "a", "height": 1}))], "result 0"),
+        ([task({"value": {"points": [[1, 2]]}})], "result 0.*original_width"),
+        ("0 .1 .1 .2 .2 .3\n0 .1 .1 .2 .1 .2 .2 .4\n", "line 2.*odd number"),
+        (CVAT.format("<box/>"), "shape 0.*'xtl'"),
+        (CVAT.format(RUNS), "shape 0.*do not fill"),
     ],
-)
-def test_damaged_entries_are_named(tmp_path, name, content, text):
+)  # fmt: skip
+def test_damaged_entries_are_named(tmp_path, content, text):
+    name = "a.json"
+    if isinstance(content, str):
+        name = "a.xml" if content.startswith("<") else "a.txt"
     with pytest.raises(InputError, match=rf"E114 {name}: .*{text}"):
         read(tmp_path, content, name)
+
+
+def test_sam_of_several_images_and_files_that_name_none(tmp_path):
+    content = [{"image_id": i, "segmentation": [[1, 1, 30, 1, 30, 30]]} for i in (1, 2)]
+    with pytest.raises(InputError, match=r"E115 .*2 images.*there are 1, 2"):
+        read(tmp_path, content)
+    assert len(read(tmp_path, content, image="2")) == 1
+    with pytest.raises(InputError, match=r"E115 .*no image or several are called '2'.*there are 1"):
+        read(tmp_path, content[:1], image="2")
+    for none in (labelme(), [{"segmentation": [[1, 1, 30, 1, 30, 30]]}], geojson()):
+        with pytest.raises(UsageError, match=r"E118 stones.json: .*'tray'.*Leave --image"):
+            read(tmp_path, none, image="tray")
+
+
+def test_geojson_in_no_length(tmp_path):
+    crs = {"properties": {"name": "urn:ogc:def:crs:OGC:1.3:CRS84"}}
+    for changes, text in (({"crs": crs}, "degrees"), ({"unit": "parsec"}, "'parsec' is not known"),
+                          ({"unit": None}, "None is not known")):  # fmt: skip
+        with pytest.raises(InputError, match=rf"E116 .*{text}"):
+            read(tmp_path, geojson(**changes))
+
+
+def test_no_stones_or_none_inside_the_image_and_a_name_that_is_not_unicode(tmp_path):
+    for content in (labelme(shapes=[]), coco({}), [], geojson(features=[])):
+        with pytest.raises(InputError, match=r"E104 stones.json: there are no stones"):
+            read(tmp_path, content)
+    with pytest.raises(InputError, match=r"E104.*without a pixel, left out: stone 1 \(1\)"):
+        read(tmp_path, shape(points=[[400, 400], [430, 400], [430, 430]]))
+    (stone,) = read(tmp_path, shape(label="Stein \ud83e"))
+    assert stone.name.encode() == b"Stein ?"
+
+
+def test_extras_that_are_not_installed(tmp_path, monkeypatch):
+    for name, text, package, extra in (("a.dxf", "0\nSECTION\n", "ezdxf", "cad"),
+                                       ("a.ply", "ply\n", "trimesh", "mesh")):  # fmt: skip
+        monkeypatch.setitem(sys.modules, package, None)
+        said = rf"E305 .*{package} is not installed.*pip install drystone\[{extra}\]"
+        with pytest.raises(UsageError, match=said):
+            read(tmp_path, text, name)

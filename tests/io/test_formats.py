@@ -3,6 +3,7 @@
 import hashlib
 import io
 import struct
+from itertools import product
 
 import numpy as np
 import pytest
@@ -42,26 +43,22 @@ def tiff(values, **options):
 
 def palette(values, kind):
     """A picture of indices whose colours all look the same."""
-    image = Image.fromarray(values.astype(np.uint8))
+    image = Image.fromarray(values)
     image.putpalette([0, 0, 0, *[9] * 765])
     image.save(buffer := io.BytesIO(), kind)
     return buffer.getvalue()
 
 
-PICTURES = [
-    *((255, lambda a, k=kind: palette(a, k)) for kind in ("PNG", "TIFF", "BMP")),
+def test_ids_of_8_16_and_32_bits_survive(tmp_path):
+    small = two_stones(7, 255, np.uint8)
+    files = [(255, palette(small, kind)) for kind in ("PNG", "TIFF", "BMP")]
     # GIF: keep unused colours
-    *((255, lambda a, k=kind: pillow(a.astype(np.uint8), k, optimize=False))
-      for kind in ("PNG", "TIFF", "BMP", "GIF")),
-    *((65535, write) for write in (lambda a: pillow(a.astype(np.uint16), "PNG"), tiff)),
-    *((top, tiff) for top in (70000, 2**32 - 1)),
-]  # fmt: skip
-
-
-@pytest.mark.parametrize(("top", "write"), PICTURES)
-def test_ids_of_8_16_and_32_bits_survive(tmp_path, top, write):
-    (tmp_path / "stones.any").write_bytes(write(two_stones(7, top)))
-    assert areas(read_stones(tmp_path / "stones.any")) == {7: 375, top: 600}
+    kinds = ("PNG", "TIFF", "BMP", "GIF")
+    files += [(255, pillow(small, kind, optimize=False)) for kind in kinds]
+    files += [(65535, pillow(two_stones(7, 65535, np.uint16), "PNG"))]
+    files += [(top, tiff(two_stones(7, top))) for top in (65535, 70000, 2**32 - 1)]
+    for top, data in files:
+        assert areas(read_stones(written(tmp_path, data))) == {7: 375, top: 600}
 
 
 @pytest.mark.parametrize(("depth", "top"), [(1, 1), (2, 3), (4, 15)])
@@ -77,13 +74,21 @@ def rgb(labels):
     return np.stack([labels >> shift & 255 for shift in (0, 8, 16)], axis=-1).astype(np.uint8)
 
 
+def with_last(values, last):
+    return np.concatenate([np.atleast_3d(values), np.atleast_3d(last)], axis=-1)
+
+
+def written(folder, data):
+    (folder / "a.any").write_bytes(data)
+    return folder / "a.any"
+
+
 @pytest.mark.parametrize("alpha", [None, 255, 0])
 def test_colours_are_ids_and_alpha_is_ignored(tmp_path, alpha):
     values = rgb(two_stones())
     if alpha is not None:
-        values = np.dstack([values, np.full(values.shape[:2], alpha, np.uint8)])
-    Image.fromarray(values).save(tmp_path / "rgb.png")
-    stones = read_stones(tmp_path / "rgb.png")
+        values = with_last(values, np.full((40, 60), alpha, np.uint8))
+    stones = read_stones(written(tmp_path, pillow(values, "PNG")))
     assert areas(stones) == {300: 375, 70000: 600}
     assert codes(stones) == (["W174", "W115"] if alpha == 0 else ["W115"])
     assert "3 colours" in stones.notices[-1].message
@@ -93,16 +98,11 @@ def test_colours_are_ids_and_alpha_is_ignored(tmp_path, alpha):
 @pytest.mark.parametrize(
     "array",
     [
-        two_stones(),
-        two_stones().astype(np.int64),
-        two_stones().astype(np.float64),
-        np.asfortranarray(two_stones()),
-        two_stones()[None],
-        two_stones()[:, :, None],
-        two_stones().astype(">u4"),
-        rgb(two_stones()),
+        two_stones(), two_stones().astype(np.int64), two_stones().astype(np.float64),
+        np.asfortranarray(two_stones()), two_stones()[None], two_stones()[:, :, None],
+        two_stones().astype(">u4"), rgb(two_stones()),
     ],
-)
+)  # fmt: skip
 def test_arrays_and_npy(tmp_path, array):
     np.save(tmp_path / "a.npy", array)
     for source in (array, tmp_path / "a.npy", str(tmp_path / "a.npy")):
@@ -112,10 +112,9 @@ def test_arrays_and_npy(tmp_path, array):
 
 
 def test_source_names_the_bytes(tmp_path):
-    path = tmp_path / "stones.png"
-    path.write_bytes(pillow(two_stones(7, 9, np.uint8), "PNG"))
+    path = written(tmp_path, pillow(two_stones(7, 9, np.uint8), "PNG"))
     source = read_stones(path).source
-    assert source.path == "stones.png"
+    assert source.path == "a.any"
     assert source.sha256 == hashlib.sha256(path.read_bytes()).hexdigest()
     array = two_stones()
     digests = {read_stones(a).source.sha256 for a in (array, array.astype(np.int64), array[:, :59])}
@@ -166,15 +165,14 @@ def test_bytes_that_are_refused(tmp_path, data, text):
     with pytest.raises(InputError, match=text) as caught:
         read_stones(tmp_path / "a.png")
     assert caught.value.where == "a.png"
+
+
+def test_files_that_are_absent_or_beyond_a_limit_of_pixels_that_is_a_setting(tmp_path):
     with pytest.raises(InputError, match=r"E100.*no such file"):
         read_stones(tmp_path / "b.png")
-
-
-@pytest.mark.parametrize("data", [tiff(NOISY), pillow(NOISY, "BMP"), npy(NOISY)])
-def test_the_limit_of_pixels_is_a_setting(tmp_path, data):
-    (tmp_path / "a.any").write_bytes(data)
-    with pytest.raises(InputError, match=r"E110"):
-        read_stones(tmp_path / "a.any", settings=ReadSettings(max_image_mpx=0.001))
+    for data in (tiff(NOISY), pillow(NOISY, "BMP"), npy(NOISY)):
+        with pytest.raises(InputError, match=r"E110"):
+            read_stones(written(tmp_path, data), settings=ReadSettings(max_image_mpx=0.001))
 
 
 def test_pictures_beyond_pillows_guard_are_read(monkeypatch):
@@ -187,13 +185,6 @@ def test_pictures_beyond_pillows_guard_are_read(monkeypatch):
 
 MASKS = np.stack([two_stones() == 300, two_stones() == 70000], axis=-1)
 FULL = np.full((40, 60, 1), 255, np.uint8)
-
-
-def with_last(values, last):
-    return np.concatenate([np.atleast_3d(values), np.atleast_3d(last)], axis=-1)
-
-
-# -- orientation -------------------------------------------------------------------------------
 
 
 def upright(values, orientation):
@@ -233,45 +224,37 @@ def test_an_orientation_turns_a_mask_with_its_alpha_in_other_formats(kind, orien
 
 def test_all_readers_of_a_wall_turn_it_alike(tmp_path):
     labels = two_stones(7, 9, np.uint8)
-    (tmp_path / "a.tif").write_bytes(pillow(labels, "TIFF", tiffinfo={274: 4}))
-    wall = read_wall(tmp_path / "a.tif")
+    path = written(tmp_path, pillow(labels, "TIFF", tiffinfo={274: 4}))
+    wall = read_wall(path)
     np.testing.assert_array_equal(wall.labels, labels[::-1])
-    assert [notice.code for notice in wall.notices] == ["W173"]
+    assert codes(wall) == ["W173"]
     assert "mirrored top to bottom, as its orientation (4) says" in str(wall.notices[0])
-    assert read_stones(tmp_path / "a.tif").by_id(7).bottom_px == 5
-
-
-# -- channels ----------------------------------------------------------------------------------
+    assert read_stones(path).by_id(7).bottom_px == 5
 
 
 ONE = two_stones() == 300
 
 
-@pytest.mark.parametrize(
-    "values",
-    [
+def test_a_last_channel_that_may_be_a_stone_is_refused(tmp_path):
+    for values in (
         MASKS,
         MASKS.astype(np.uint8) * np.uint8(255),
         with_last(two_stones(7, 9, np.uint8), ONE * np.uint8(255)),
         with_last(rgb(two_stones()), ONE * np.uint8(255)),
         np.stack([ONE, ~ONE, ONE, ~ONE], -1),
-    ],
-)
-def test_a_last_channel_that_may_be_a_stone_is_refused(tmp_path, values):
-    np.save(tmp_path / "two.npy", values)
-    np.savez(tmp_path / "two.npz", values)
-    for source in (values, tmp_path / "two.npy", tmp_path / "two.npz"):
-        with pytest.raises(InputError, match=r"E109.*not transparency.*one channel.*a folder"):
-            read_stones(source)
+    ):
+        np.save(tmp_path / "two.npy", values)
+        np.savez(tmp_path / "two.npz", values)
+        for source in (values, tmp_path / "two.npy", tmp_path / "two.npz"):
+            with pytest.raises(InputError, match=r"E109.*not transparency.*one channel.*a folder"):
+                read_stones(source)
 
 
-@pytest.mark.parametrize("colour", [False, True])
-@pytest.mark.parametrize(
-    "alpha", [FULL, FULL * 0, (two_stones() > 0) * np.uint8(255), (two_stones() > 0)]
-)
-def test_an_array_with_alpha_is_read(colour, alpha):
-    values = rgb(two_stones()) if colour else two_stones()
-    assert areas(read_stones(with_last(values, alpha))) == {300: 375, 70000: 600}
+@pytest.mark.parametrize("labels", [two_stones(), rgb(two_stones())])
+def test_an_array_with_alpha_is_read(labels):
+    seen = two_stones() > 0
+    for alpha in (FULL, FULL * 0, seen * np.uint8(255), seen):
+        assert areas(read_stones(with_last(labels, alpha))) == {300: 375, 70000: 600}
 
 
 GREY = two_stones(8, 255, np.uint8)
@@ -280,23 +263,22 @@ ERASED = (GREY != 8) * np.uint8(255)  # the colours of stone 8 are there, under 
 SOFT = np.round(ndimage.gaussian_filter((GREY > 0) * 255.0, 1)).astype(np.uint8)
 
 
-def with_alpha(kind, values, alpha):
+def with_alpha(folder, kind, values, alpha):
     """A file of grey values with alpha: a channel, or an entry of the palette that is clear."""
-    if kind in ("L", "RGB"):
+    image, options = Image.fromarray(values), {}
+    if kind in CHANNELS:
         channels = [values] * (1 if kind == "L" else 3)
-        return pillow(np.dstack([*channels, alpha]), "PNG")
-    if kind in ("TIFF", "lzw"):
+        image = Image.fromarray(np.dstack([*channels, alpha]))
         options = {"compression": "tiff_lzw"} if kind == "lzw" else {}
-        return pillow(np.dstack([values] * 3 + [alpha]), "TIFF", **options)
-    image = Image.fromarray(values)
-    clear = int(values[alpha == 0].max())
-    if kind in ("P", "GIF"):
-        image.putpalette([i // 3 for i in range(768)])
-    elif kind == "16":
-        image = Image.fromarray(values.astype(np.uint16))
-    options = {"transparency": clear, "optimize": False}
-    image.save(buffer := io.BytesIO(), "GIF" if kind == "GIF" else "PNG", **options)
-    return buffer.getvalue()
+    else:
+        if kind in ("P", "GIF"):
+            image.putpalette([i // 3 for i in range(768)])
+        elif kind == "16":
+            image = Image.fromarray(values.astype(np.uint16))
+        options = {"transparency": int(values[alpha == 0].max()), "optimize": False}
+    form = {"TIFF": "TIFF", "lzw": "TIFF", "GIF": "GIF"}.get(kind, "PNG")
+    image.save(folder / "a.any", form, **options)
+    return folder / "a.any"
 
 
 CHANNELS = ["L", "RGB", "TIFF", "lzw"]
@@ -304,87 +286,66 @@ CHANNELS = ["L", "RGB", "TIFF", "lzw"]
 
 @pytest.mark.parametrize("kind", [*CHANNELS, "P", "GIF", "16", "8"])
 def test_a_transparent_pixel_is_background_whatever_its_colour(tmp_path, kind):
-    (tmp_path / "a.any").write_bytes(with_alpha(kind, GREY, ERASED))
-    stones = read_stones(tmp_path / "a.any", settings=ReadSettings(mask=False))
+    path = with_alpha(tmp_path, kind, GREY, ERASED)
+    stones = read_stones(path, settings=ReadSettings(mask=False))
     assert areas(stones) == {255: 600}
     assert codes(stones) == ["W135"]
     assert "375 px are transparent, whatever their colour" in str(stones.notices[0])
-    wall = read_wall(tmp_path / "a.any")
+    wall = read_wall(path)
     np.testing.assert_array_equal(wall.labels, GREY * (ERASED > 0))
-    assert [notice.code for notice in wall.notices] == ["W135"]
+    assert codes(wall) == ["W135"]
 
 
 @pytest.mark.parametrize("kind", CHANNELS)
-@pytest.mark.parametrize(
-    ("alpha", "said"),
-    [(NOISE, []), (FULL[..., 0], []), ((GREY > 0) * np.uint8(255), []), (GREY * 0, ["W174"])],
-)
-def test_alpha_that_hides_no_stone_changes_nothing(tmp_path, kind, alpha, said):
-    (tmp_path / "a.any").write_bytes(with_alpha(kind, GREY, alpha))
-    stones = read_stones(tmp_path / "a.any")
-    assert areas(stones) == {8: 375, 255: 600}
-    assert codes(stones) == said
-    np.testing.assert_array_equal(read_wall_image(tmp_path / "a.any"), GREY)
+def test_alpha_that_hides_no_stone_changes_nothing(tmp_path, kind):
+    for alpha in (NOISE, FULL[..., 0], (GREY > 0) * np.uint8(255), GREY * 0):
+        path = with_alpha(tmp_path, kind, GREY, alpha)
+        stones = read_stones(path)
+        assert areas(stones) == {8: 375, 255: 600}
+        assert codes(stones) == ([] if alpha.any() else ["W174"])
+        np.testing.assert_array_equal(read_wall_image(path), GREY)
 
 
 @pytest.mark.parametrize("kind", CHANNELS)
 @pytest.mark.parametrize(("colour", "under"), [(0, 0), (90, 90), (255, 0)])
-@pytest.mark.parametrize("alpha", [(GREY > 0) * np.uint8(255), (GREY > 0) * np.uint8(1), SOFT])
-def test_a_mask_that_lives_in_alpha(tmp_path, kind, colour, under, alpha):
-    values = np.where(alpha > 0, colour, under).astype(np.uint8)
-    (tmp_path / "a.any").write_bytes(with_alpha(kind, values, alpha))
-    stones = read_stones(tmp_path / "a.any")
-    assert len(stones) == 2
-    assert stones.total_area_px == ((SOFT >= 128) if alpha is SOFT else (alpha > 0)).sum()
-    assert "W114" in codes(stones)
+def test_a_mask_that_lives_in_alpha(tmp_path, kind, colour, under):
+    for alpha in ((GREY > 0) * np.uint8(255), (GREY > 0) * np.uint8(1), SOFT):
+        values = np.where(alpha > 0, colour, under).astype(np.uint8)
+        stones = read_stones(with_alpha(tmp_path, kind, values, alpha))
+        assert len(stones) == 2
+        assert stones.total_area_px == ((SOFT >= 128) if alpha is SOFT else (alpha > 0)).sum()
+        assert "W114" in codes(stones)
 
 
 @pytest.mark.parametrize("kind", ["GIF", "P", "16"])
 def test_a_stone_of_0_on_a_transparent_ground_is_refused(tmp_path, kind):
     values = np.select([GREY == 8, GREY == 255], [0, 5], 9).astype(np.uint8)
-    (tmp_path / "a.any").write_bytes(with_alpha(kind, values, (values != 9) * 255))
+    path = with_alpha(tmp_path, kind, values, (values != 9) * 255)
     with pytest.raises(LabelImageError, match=r"E108 a.any: 375 px are 0 .*add 1"):
-        read_stones(tmp_path / "a.any")
+        read_stones(path)
     values[values == 0] = 7
-    (tmp_path / "a.any").write_bytes(with_alpha(kind, values, (values != 9) * 255))
-    assert areas(read_stones(tmp_path / "a.any")) == {7: 375, 5: 600}
+    path = with_alpha(tmp_path, kind, values, (values != 9) * 255)
+    assert areas(read_stones(path)) == {7: 375, 5: 600}
 
 
-@pytest.mark.parametrize("declared", [False, True])
-def test_an_extra_channel_of_a_tiff_is_alpha_only_where_it_says_so(tmp_path, declared):
-    values = MASKS.astype(np.uint8) * np.uint8(255)
-    extra = ["unassalpha" if declared else "unspecified"]
-    data = tiff(values, photometric="minisblack", planarconfig="contig", extrasamples=extra)
-    (tmp_path / "a.tif").write_bytes(data)
-    if declared:
-        # All that can be seen is 0 where the other mask is 255.
-        stones = read_stones(tmp_path / "a.tif")
-        assert areas(stones) == {1: 600}
-        assert codes(stones) == ["W135", "W114"]
-        return
-    with pytest.raises(InputError, match=r"E109 a.tif: the last channel"):
-        read_stones(tmp_path / "a.tif")
+def test_an_extra_channel_of_a_tiff_is_alpha_only_where_it_says_so(tmp_path):
+    values, options = MASKS.astype(np.uint8) * np.uint8(255), {"photometric": "minisblack"}
+    options["planarconfig"] = "contig"
+    stones = read_stones(written(tmp_path, tiff(values, extrasamples=["unassalpha"], **options)))
+    # All that can be seen is 0 where the other mask is 255.
+    assert areas(stones) == {1: 600}
+    assert codes(stones) == ["W135", "W114"]
+    with pytest.raises(InputError, match=r"E109 a.any: the last channel"):
+        read_stones(written(tmp_path, tiff(values, extrasamples=["unspecified"], **options)))
 
 
-@pytest.mark.parametrize("kind", ["TIFF", "lzw", "JPEG"])
-@pytest.mark.parametrize("mode", ["CMYK", "LAB", "YCbCr"])
+@pytest.mark.parametrize(
+    ("kind", "mode"), [*product(["TIFF", "lzw"], ["CMYK", "LAB", "YCbCr"]), ("JPEG", "CMYK")]
+)
 def test_colours_that_hold_no_ids(tmp_path, kind, mode):
-    if kind == "JPEG" and mode != "CMYK":
-        return
     image = Image.fromarray(rgb(two_stones()))
     image = Image.new("LAB", image.size, (3, 3, 3)) if mode == "LAB" else image.convert(mode)
     options = {"compression": "tiff_lzw"} if kind == "lzw" else {}
     image.save(tmp_path / "a.any", "TIFF" if kind == "lzw" else kind, **options)
     with pytest.raises(InputError, match=rf"E107 a.any: the colour mode {mode} does not hold ids"):
         read_stones(tmp_path / "a.any")
-
-
-# -- no warnings of NumPy (errors in these tests) ----------------------------------------------
-
-
-@pytest.mark.parametrize("suffix", ["tif", "npy"])
-def test_numbers_of_16_bits_with_a_point(tmp_path, suffix):
-    labels = two_stones(7, 300, np.float16)
-    path = tmp_path / f"a.{suffix}"
-    np.save(path, labels) if suffix == "npy" else tifffile.imwrite(path, labels)
-    assert areas(read_stones(path)) == {7: 375, 300: 600}

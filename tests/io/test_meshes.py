@@ -11,7 +11,7 @@ from drystone.errors import InputError
 from drystone.io.read_stones import ReadSettings, read_stones
 from tests.io.hostile import PLY
 from tests.io.known_stones import METRIC, PLACES, PX_PER_M, STONES, close, corners, masks, turn
-from tests.io.pictures import codes
+from tests.io.pictures import codes, said
 
 
 def solid(polygons, place, hand=1):
@@ -52,38 +52,43 @@ def scene(place, hand=1):
 )
 def test_meshes_in_every_plane(tmp_path, place):
     path = scanned(tmp_path, scene(place))
-    close(read_stones(path, settings=replace(METRIC, up=PLACES[place][2])))
+    stones = read_stones(path, settings=replace(METRIC, up=PLACES[place][2]))
+    close(stones)
+    assert stones.source.px_per_m == PX_PER_M
+    assert stones.by_id(21).name == "stone_21"
+    seen, unit = stones.notices[:2]
+    axis = {"right": "X, with", "front": "Y, with"}.get(place, "")
+    assert f"seen along {axis}" in seen.message
+    assert "taken as metres" in unit.message
 
 
 @pytest.mark.parametrize(
-    ("place", "asks", "kind"),
+    ("place", "kind"),
     [
-        ("top", False, "stl"),
-        ("front", True, "stl_ascii"),
-        ("right", False, "ply"),
-        ("y, top", True, "obj"),
-        ("y, front", False, "obj"),
+        ("top", "stl"),
+        ("front", "stl_ascii"),
+        ("right", "ply"),
+        ("y, top", "obj"),
+        ("y, front", "obj"),
     ],
 )
-def test_meshes_that_may_be_mirrored_are_asked_about(tmp_path, place, asks, kind):
+def test_meshes_that_may_be_mirrored_are_asked_about(tmp_path, place, kind):
     path = scanned(tmp_path, solid(STONES[5], place), kind)
-    if not asks:
-        notice = read_stones(path, settings=METRIC).notices[0]
-        assert "seen along" in notice.message
-        assert "--up" in notice.cure
+    if place in ("front", "y, top"):
+        with pytest.raises(InputError, match=r"E116 .*which axis is up.*--up y .*or --up z"):
+            read_stones(path, settings=METRIC)
         return
-    with pytest.raises(InputError, match=r"E116 .*which axis is up.*--up y .*or --up z"):
-        read_stones(path, settings=METRIC)
+    notice = read_stones(path, settings=METRIC).notices[0]
+    assert "seen along" in notice.message
+    assert "--up" in notice.cure
 
 
 @pytest.mark.parametrize("place", ["front", "right", "top"])
 def test_meshes_of_a_left_hand_are_named(tmp_path, place):
     for hand in (1, -1):
-        stones = read_stones(
-            scanned(tmp_path, scene(place, hand)), settings=replace(METRIC, up="z")
-        )
-        said = any("left hand" in notice.message for notice in stones.notices)
-        assert said == (hand == -1 and place != "top")
+        path = scanned(tmp_path, scene(place, hand))
+        told = said(read_stones(path, settings=replace(METRIC, up="z")))
+        assert ("left hand" in told) == (hand == -1 and place != "top")
 
 
 def torn(mesh, way):
@@ -103,22 +108,15 @@ def torn(mesh, way):
 
 @pytest.mark.parametrize(
     ("way", "shift", "kind"),
-    [
-        ("normals", 0.0, "obj"),
-        ("texture", 40.0, "obj"),
-        ("noise", 0.0, "stl"),
-        ("noise", 40.0, "ply"),
-    ],
+    [("normals", 0, "obj"), ("texture", 40, "obj"), ("noise", 0, "stl"), ("noise", 40, "ply")],
 )
 def test_corners_in_one_place_are_one(tmp_path, way, shift, kind):
     names = [stone for stone in APART if stone != 34]
     whole = trimesh.util.concatenate([solid(STONES[stone], "top") for stone in names])
     whole.vertices += (shift, shift, 0)
-    path = scanned(tmp_path, torn(whole, way), kind)
-    stones = read_stones(path, settings=METRIC)
-    areas = [stone.area_px for stone in stones]
+    stones = read_stones(scanned(tmp_path, torn(whole, way), kind), settings=METRIC)
     want = [shapely.Polygon(STONES[stone][0][0], STONES[stone][0][1:]).area for stone in names]
-    assert areas == pytest.approx(want, rel=1e-2)
+    assert [stone.area_px for stone in stones] == pytest.approx(want, rel=1e-2)
 
 
 def test_fine_meshes_far_from_the_origin_are_not_welded_together(tmp_path):
@@ -132,57 +130,33 @@ def test_fine_meshes_far_from_the_origin_are_not_welded_together(tmp_path):
     assert len(read_stones(tmp_path / "s.obj", settings=METRIC)) == 2
 
 
-PLACE = {"x": "right", "y": "front", "z": "top"}
-"""Where the stones are that one sees looking along an axis."""
-
-
-def apart(axis="z", unit=1.0):
-    """The bodies that touch nothing, as one mesh without names, and their ids in order."""
-    found = trimesh.util.concatenate([solid(STONES[i], PLACE[axis]) for i in APART])
-    return found.apply_scale(1 / unit), APART
-
-
-@pytest.mark.parametrize("axis", ["x", "y"])
-def test_obj_with_named_objects(tmp_path, axis):
-    path = scanned(tmp_path, scene(PLACE[axis]))
-    stones = read_stones(path, settings=replace(METRIC, up="z"))
-    close(stones)
-    assert stones.source.px_per_m == PX_PER_M
-    assert stones.by_id(21).name == "stone_21"
-    seen, unit = stones.notices[:2]
-    assert f"seen along {axis.upper()}, with" in seen.message
-    assert "taken as metres" in unit.message
+def apart(place="top", unit=1.0):
+    """The bodies that touch nothing, as one mesh without names."""
+    found = trimesh.util.concatenate([solid(STONES[i], place) for i in APART])
+    return found.apply_scale(1 / unit)
 
 
 @pytest.mark.parametrize(("kind", "options"), KINDS)
 def test_bodies_without_names(tmp_path, kind, options):
-    mesh, names = apart("y", unit=0.001)
-    path = scanned(tmp_path, mesh, kind, options)
+    path = scanned(tmp_path, apart("front", unit=0.001), kind, options)
     settings = replace(METRIC, unit="mm", up="z")
     stones = read_stones(path, settings=settings)
-    areas = [masks()[known].sum() if known != 34 else 50 * 40 for known in names]
+    areas = [masks()[known].sum() if known != 34 else 50 * 40 for known in APART]
     assert [stone.area_px for stone in stones] == pytest.approx(areas, rel=3e-3)
-    assert not any("taken as metres" in notice.message for notice in stones.notices)
+    assert "taken as metres" not in said(stones)
     unnamed = path.rename(tmp_path / "stones")
-    assert len(read_stones(unnamed, settings=settings)) == len(names)  # by the content alone
+    assert len(read_stones(unnamed, settings=settings)) == len(APART)  # by the content alone
 
 
 def test_obj_faces_may_have_many_corners_and_count_from_the_end(tmp_path):
-    text = """# an L, as one face of six corners, and a box of quadrilaterals
+    """An L, as one face of six corners, and a box of quadrilaterals."""
+    text = """# a comment
 o wall_1
-v 0 0 0
-v 4 0 0
-v 4 0 1
-v 1 0 1
-v 1 0 3
-v 0 0 3
+v 0 0 0\nv 4 0 0\nv 4 0 1\nv 1 0 1\nv 1 0 3\nv 0 0 3
 f 1/1/1 2/2/1 3/3/1 4//1 5 6
 g part
 o wall_2
-v 6 0 0
-v 8 0 0
-v 8 0 2
-v 6 0 2
+v 6 0 0\nv 8 0 0\nv 8 0 2\nv 6 0 2
 f -4 -3 -2 -1
 """
     stones = read_stones(saved(tmp_path, text, "s.obj"), settings=ReadSettings(px_per_m=50, up="z"))
@@ -199,35 +173,33 @@ def boxes(*names):
     return "\n".join(lines)
 
 
-WHY = "of the groups of a face the first counts, and what follows # is a comment"
-
-
 @pytest.mark.parametrize(
-    ("names", "expected", "said"),
+    ("names", "expected", "parts"),
     [
         (["o Stone 2 # left", "o Stone 1"], ["Stone 1", "Stone 2"], ""),
-        (["o Stone 1 # left", "o Stone 1 # right"], ["Stone 1"],
-         f"{WHY}, so Stone 1 is one stone of: Stone 1 # left, Stone 1 # right."),
-        (["g Stone # 1", "g Stone # 2"], ["Stone"],
-         f"{WHY}, so Stone is one stone of: Stone # 1, Stone # 2."),
+        (["o Stone 1 # left", "o Stone 1 # right"], ["Stone 1"], "Stone 1 # left, Stone 1 # right"),
+        (["g Stone # 1", "g Stone # 2"], ["Stone"], "Stone # 1, Stone # 2"),
         (["g a wall", "g b wall"], ["a", "b"], ""),  # of the group and of that of all
         (["o x\ng left part", "g right part\no y"], ["x", "y"], ""),
-        (["g stone_1 top", "g stone_1 side"], ["stone_1"],
-         f"{WHY}, so stone_1 is one stone of: stone_1 top, stone_1 side."),
+        (["g stone_1 top", "g stone_1 side"], ["stone_1"], "stone_1 top, stone_1 side"),
     ],
-)  # fmt: skip
-def test_obj_objects_and_groups(tmp_path, names, expected, said):
+)
+def test_obj_objects_and_groups(tmp_path, names, expected, parts):
     settings = ReadSettings(px_per_m=50, pieces="keep-largest")
     text = boxes(*names) + "\no nothing"
     stones = read_stones(saved(tmp_path, text, "s.obj"), settings=settings)
     assert [stone.name for stone in stones] == expected
-    assert [n.message for n in stones.notices if "groups" in n.message] == ([said] if said else [])
+    told = [
+        "of the groups of a face the first counts, and what follows # is a comment, "
+        f"so {expected[0]} is one stone of: {parts}."
+    ]
+    groups = [n.message for n in stones.notices if "groups" in n.message]
+    assert groups == (told if parts else [])
 
 
 def test_a_sphere_shows_its_circle(tmp_path):
     sphere = trimesh.creation.icosphere(subdivisions=4, radius=0.3)
-    sphere.apply_scale((1, 1, 0.5))
-    stones = read_stones(scanned(tmp_path, sphere, "stl"))
+    stones = read_stones(scanned(tmp_path, sphere.apply_scale((1, 1, 0.5)), "stl"))
     (stone,) = stones
     scale = stones.source.px_per_m
     assert stone.area_px / scale**2 == pytest.approx(np.pi * 0.09, rel=5e-3)
@@ -236,9 +208,8 @@ def test_a_sphere_shows_its_circle(tmp_path):
     assert codes(stones) == ["W119"] * 3
 
 
-@pytest.mark.parametrize(
-    ("data", "name", "text"),
-    [
+def test_damaged_meshes(tmp_path):
+    for data, name, text in (
         ("o a\nv 0 0 0\nv 1 0 0\nf 1 2 3\n", "a.obj", r"E114 .*line 4 .* \(a face of 3"),
         ("v 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "a.obj", r"E114 .*less than three coordinates"),
         ("v 0 0 x\n", "a.obj", r"E114 .*line 1"),
@@ -246,16 +217,14 @@ def test_a_sphere_shows_its_circle(tmp_path):
         (b"ply\nformat binary_little_endian 1.0\nend_header\n", "a.ply", r"E1(06|14) "),
         (PLY % b"1" + b"3 0 1 3\n", "a.ply", r"E106 .*a face of unknown vertices"),
         (b"too short", "a.stl", r"E106 .*damaged"),
-    ],
-)
-def test_damaged_meshes(tmp_path, data, name, text):
-    with pytest.raises(InputError, match=text):
-        read_stones(saved(tmp_path, data, name))
+    ):
+        with pytest.raises(InputError, match=text):
+            read_stones(saved(tmp_path, data, name))
 
 
 @pytest.mark.parametrize(("kind", "options"), KINDS[:-1])
 def test_meshes_that_are_cut_short(tmp_path, kind, options):
-    data = apart()[0].export(file_type=kind, **options)
+    data = apart().export(file_type=kind, **options)
     path = saved(tmp_path, data[: int(0.95 * len(data))], f"a.{kind[:3]}")
     with pytest.raises(InputError, match=r"E106 .*damaged or cut short"):
         read_stones(path)

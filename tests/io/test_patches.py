@@ -1,15 +1,18 @@
-"""Cutting out, holes and necks against slow twins, and the numbers of pieces that are split off."""
+"""Cutting out, filling, holes and necks by slow twins, and the numbers of split pieces."""
 
 import numpy as np
 import pytest
+import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import array_shapes, arrays
+from matplotlib.path import Path as Outline
 from scipy import ndimage
 
 from drystone.errors import LabelImageError
 from drystone.io.images import Picture
 from drystone.io.labels import Census, to_ids
+from drystone.io.outlines_in.model import Area, PlacedMask, filled_area, united
 from drystone.io.patches import cut, enclosed, neck_width_px
 from drystone.io.read_stones import ReadSettings, read_stones
 from drystone.kernels.ids import numbered
@@ -130,11 +133,8 @@ def test_pieces_are_left_out_under_the_numbers_that_were_announced():
         assert "W116" not in codes(stones)
         for piece in (4, 5, 6):
             assert (f"{piece} ({ALL[piece]} px)" in said(stones)) == (piece not in skip)
-
-
-def test_numbers_that_neither_a_stone_nor_a_piece_has_are_said():
-    stones = split(in_pieces(), (4, 7))
-    (notice,) = [n for n in stones.notices if n.code == "W116"]
+    # A number that neither a stone nor a piece has.
+    (notice,) = [n for n in split(in_pieces(), (4, 7)).notices if n.code == "W116"]
     assert notice.message == "no stone 7 to skip."
     whole = read_stones(in_pieces() % 3, settings=ReadSettings(pieces="keep-largest", skip=(4,)))
     assert "no stone 4 to skip." in [n.message for n in whole.notices]
@@ -167,3 +167,74 @@ def test_skipping_is_leaving_out(values, skip):
     left = {i: area for i, area in everything.items() if i not in skip}
     if left:
         assert areas(split(labels, skip, **more)) == left
+
+
+NUMBERS = st.integers(-24, 72).map(lambda n: n / 3 + 0.1)
+RINGS = st.lists(st.tuples(NUMBERS, NUMBERS), min_size=3, max_size=9, unique=True)
+LOW, SIZE = -10, 40
+
+
+def in_picture(placed):
+    image = np.zeros((SIZE, SIZE), bool)
+    if placed is not None:
+        rows, cols = placed.mask.shape
+        row, col = placed.row - LOW, placed.col - LOW
+        image[row : row + rows, col : col + cols] = placed.mask
+    return image
+
+
+CENTRES = np.stack(np.meshgrid(*2 * [np.arange(LOW, LOW + SIZE) + 0.5]), axis=-1)
+
+
+def off_edges(*rings):
+    """Where a rule for points on edges does not matter: centres farther than 1e-6 from them."""
+    lines = shapely.MultiLineString([[*ring, ring[0]] for ring in rings])
+    return shapely.distance(shapely.points(CENTRES), lines) > 1e-6
+
+
+def filled(*rings, **rule):
+    return in_picture(filled_area(Area(tuple(map(np.array, rings)), **rule)))
+
+
+@given(RINGS)
+def test_by_the_sum_of_turns_which_are_angles(points):
+    """The winding number as the sum of the angles at which a centre sees the edges."""
+    to_corners = np.array(points) - CENTRES[:, :, None]
+    angles = np.arctan2(to_corners[..., 1], to_corners[..., 0])
+    turns = np.roll(angles, -1, axis=-1) - angles
+    winding = ((turns + np.pi) % (2 * np.pi) - np.pi).sum(axis=-1) / (2 * np.pi)
+    where = off_edges(points)
+    found = filled(points, rule="nonzero")
+    np.testing.assert_array_equal(found[where], (np.abs(winding) > 0.5)[where])
+
+
+@given(RINGS, RINGS)
+def test_by_the_number_of_rings_as_matplotlib_counts(one, other):
+    inside = [Outline([*points, points[0]], closed=True).contains_points(CENTRES.reshape(-1, 2))
+              for points in (one, other)]  # fmt: skip
+    where = off_edges(one, other)
+    want = np.logical_xor(*inside).reshape(SIZE, SIZE)
+    np.testing.assert_array_equal(filled(one, other)[where], want[where])
+
+
+@given(st.lists(st.integers(0, 35), min_size=4, max_size=9, unique=True), st.data())
+def test_halves_of_a_polygon_share_no_pixel_and_leave_none(tens, data):
+    """Corners of an ellipse through centres of pixels, split along any of its diagonals."""
+    angles = np.radians(sorted(tens)) * 10
+    ring = np.column_stack([5.5 + 9 * np.cos(angles), 4.5 + 7 * np.sin(angles)])
+    first = data.draw(st.integers(0, len(ring) - 3))
+    last = data.draw(st.integers(first + 2, len(ring) - 1))
+    halves = (ring[first : last + 1], np.vstack([ring[last:], ring[: first + 1]]))
+    both = [filled(part) for part in halves if len(part) > 2]
+    assert sum(mask.astype(int) for mask in both).max() <= 1
+    np.testing.assert_array_equal(np.any(both, axis=0), filled(ring))
+
+
+def test_what_holds_no_centre_is_nothing_and_masks_are_united():
+    for ring in ([[0.6, 0.6], [0.9, 0.6], [0.9, 0.9]], [[0.0, 0.0], [9.0, 0.0], [4.0, 0.0]]):
+        assert filled_area(Area((np.array(ring),))) is None
+    assert united([]) is None
+    one, other = (PlacedMask(np.ones((2, 3), bool), row, col) for row, col in ((5, 5), (6, 7)))
+    union = united([one, other])
+    assert (union.row, union.col, union.mask.shape) == (5, 5, (3, 5))
+    assert union.mask.sum() == 6 + 6 - 1

@@ -1,18 +1,37 @@
+"""A plan and its file, and the folder that every command reads."""
+
 import copy
 import json
 import math
 from dataclasses import replace
+from functools import cache
 
 import jsonschema
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from PIL import Image
 
+import drystone as ds
+from drystone.cli.main import main
+from drystone.contacts.given import model_from_json
+from drystone.contacts.settled import model_of_outlines
 from drystone.errors import PlanError
+from drystone.io.photo_beside import place_photo
+from drystone.io.plan_folder import blocks_to_json
 from drystone.io.plan_json import plan_from_json, plan_schema, plan_to_json, read_plan, write_plan
+from drystone.io.wall_image import read_wall_image, write_labels
+from drystone.io.walls import read_wall
 from drystone.model.plan import Plan, PlanMetrics, StoneStep, WedgeStep
+from drystone.model.site import Site
+from drystone.model.wall import Wall
+from drystone.statics.limit import lateral_resistance
+from drystone.statics.model import GROUND
+from tests.planner.scenes import bricks, greedy, rubble
 from tests.strategies import repeatable
+from tests.verify.exact_examples import SETTINGS, exact_example
+from tests.verify.examples import example
 
 INDICES = {"SF": 0.9, "LFR": 1 / 3, "GDS": 0.5, "NHR": 0.1, "IWR": 0.2, "IS": -0.1, "LLC": 0.7}
 
@@ -27,19 +46,11 @@ def stone_step(**values):
 def plan(**values):
     wedge = WedgeStep(2, 256, 17, ((1.0, 0.0), (3.0, 0.0), (3.0, 2.0)), 0.41, 0.39)
     whole = Plan(
-        version="0.1.0",
-        method="paper",
-        seed=1,
-        settings={"mu": 0.58, "stop": {"failures": 5, "filling": 0.99}},
-        length_unit="px",
-        px_per_m=None,
-        working_scale=0.5,
+        version="0.1.0", method="paper", seed=1, length_unit="px", px_per_m=None,
+        settings={"mu": 0.58, "stop": {"failures": 5, "filling": 0.99}}, working_scale=0.5,
         source={"path": "PR.png", "sha256": "5" * 64, "stones": 32, "width_px": 598,
                 "height_px": 156},
-        width=560.0,
-        height=160.0,
-        steps=(stone_step(), wedge),
-        unused=(4,),
+        width=560.0, height=160.0, steps=(stone_step(), wedge), unused=(4,),
         stopped="Steine aufgebraucht: größte übrig",
         metrics=PlanMetrics(0.8, None, 2.5, 0.67, 0.1, 0.2, 0.41, 0.39, 8.0),
     )  # fmt: skip
@@ -76,20 +87,22 @@ def test_keys_are_those_of_the_schema_in_its_order():
 
 def test_equal_plans_give_equal_bytes(tmp_path):
     one = plan(source={**plan().source, "files": ["a.png"], "b": 1, "a": 2})
+    step = stone_step(indices=dict(reversed(INDICES.items())), angle_deg=12)
     other = plan(
-        settings=dict(reversed([*one.settings.items()])),
-        source=dict(reversed(list(one.source.items()))),
-        steps=(stone_step(indices=dict(reversed(INDICES.items())), angle_deg=12), *one.steps[1:]),
+        settings=dict(reversed(one.settings.items())),
+        source=dict(reversed(one.source.items())),
+        steps=(step, *one.steps[1:]),
         width=560,
         seed=np.int64(1),
     )
     assert one == other
-    write_plan(one, tmp_path / "one.json")
-    write_plan(other, tmp_path / "other.json")
-    text = (tmp_path / "one.json").read_bytes()
-    assert text == (tmp_path / "other.json").read_bytes()
-    assert text.endswith(b"}\n")
-    assert "größte".encode() in text
+    texts = []
+    for made in (one, other):
+        write_plan(made, tmp_path / "plan.json")
+        texts.append((tmp_path / "plan.json").read_bytes())
+    assert texts[0] == texts[1]
+    assert texts[0].endswith(b"}\n")
+    assert "größte".encode() in texts[0]
     zero, minus = (plan(steps=(stone_step(angle_deg=value),)) for value in (0.0, -0.0))
     assert json.dumps(plan_to_json(zero)) == json.dumps(plan_to_json(minus))
 
@@ -98,94 +111,69 @@ def test_equal_plans_give_equal_bytes(tmp_path):
 @given(st.floats(-1e9, 1e9), st.floats(1e-9, 1e9))
 def test_floats_keep_full_precision(angle_deg, width):
     one = plan(steps=(stone_step(angle_deg=angle_deg),), width=width)
-    found = plan_from_json(json.loads(json.dumps(plan_to_json(one))))
-    assert found == one
-
-
-@pytest.mark.parametrize(
-    ("place", "change"),
-    [
-        ("$.steps[0].angle_deg", {"steps": (stone_step(angle_deg=math.nan),)}),
-        ("$.settings.a[1]", {"settings": {"a": [0, math.inf]}}),
-        ("$.metrics.F_AV", {"metrics": replace(plan().metrics, F_AV=-math.inf)}),
-    ],
-)
-def test_numbers_that_are_not_finite_are_never_written(tmp_path, place, change):
-    path = tmp_path / "plan.json"
-    with pytest.raises(PlanError, match="E205") as caught:
-        write_plan(plan(**change), path)
-    assert place in caught.value.where
-    assert not path.exists()
+    assert plan_from_json(json.loads(json.dumps(plan_to_json(one)))) == one
 
 
 def test_failed_write_leaves_the_old_plan(tmp_path):
     path = tmp_path / "plan.json"
     write_plan(plan(), path)
     before = path.read_bytes()
-    with pytest.raises(PlanError, match="E205"):
-        write_plan(plan(working_scale=-1.0), path)
-    assert path.read_bytes() == before
-    with pytest.raises(PlanError, match="E206"):
-        write_plan(plan(), tmp_path / "no folder" / "plan.json")
+    for place, change in (
+        ("$.steps[0].angle_deg", {"steps": (stone_step(angle_deg=math.nan),)}),
+        ("$.settings.a[1]", {"settings": {"a": [0, math.inf]}}),
+        ("$.metrics.F_AV", {"metrics": replace(plan().metrics, F_AV=-math.inf)}),
+        ("", {"working_scale": -1.0}),
+    ):
+        with pytest.raises(PlanError, match="E205") as caught:
+            write_plan(plan(**change), path)
+        assert place in caught.value.where
+        assert path.read_bytes() == before
     (tmp_path / "taken").mkdir()
-    with pytest.raises(PlanError, match="E206"):
-        write_plan(plan(), tmp_path / "taken")
+    for place in ("no folder/plan.json", "taken"):
+        with pytest.raises(PlanError, match="E206"):
+            write_plan(plan(), tmp_path / place)
     assert sorted(p.name for p in tmp_path.iterdir()) == ["plan.json", "taken"]
 
 
 def bad(path, value):
     """The contents of a plan with one value replaced; `...` takes it out."""
     data = copy.deepcopy(plan_to_json(plan()))
-    *parents, last = path.split("/")
+    *parents, last = (int(name) if name.isdigit() else name for name in path.split("/"))
     at = data
     for name in parents:
-        at = at[int(name)] if isinstance(at, list) else at[name]
-    key = int(last) if isinstance(at, list) else last
+        at = at[name]
     if value is ...:
-        del at[key]
+        del at[last]
     else:
-        at[key] = value
+        at[last] = value
     return data
 
 
-@pytest.mark.parametrize(
-    ("path", "value", "place"),
-    [
-        ("steps/0/angel_deg", 12.0, "$.steps[0]"),
-        ("steps/0/stone", 1.5, "$.steps[0].stone"),
-        ("steps/0/side", "top", "$.steps[0].side"),
-        ("steps/0/kind", ..., "$.steps[0]"),
-        ("units/length", "m", "$.units.px_per_m"),
-        ("units/px_per_m", 200.0, "$.units.px_per_m"),
-        ("wall/width", 10**400, "$.wall.width"),
-        ("metrics/F_SF", None, "$.metrics.F_SF"),
-        ("seed", True, "$.seed"),
-    ],
-)
-def test_plan_that_breaks_the_schema_is_refused_with_its_place(path, value, place):
-    with pytest.raises(PlanError) as caught:
-        plan_from_json(bad(path, value))
-    assert caught.value.code == "E205"
-    assert caught.value.where == f"plan: {place}"
-    assert caught.value.what
-    assert caught.value.cure
-    assert len(str(caught.value)) < 700
-
-
-@pytest.mark.parametrize(
-    ("path", "value", "cure"),
-    [
-        ("method", ..., "What belongs there: Name of the planning method"),
-        ("steps/0/stone", ..., "What belongs there: Id of a stone"),
-        ("colour", 1.0, "Known there: schema, version, method, "),
-        ("steps/1/angle_deg", 1.0, "Known there: step, kind, id, under, polygon, "),
-    ],
-)
-def test_what_is_missing_or_belongs_there_is_said(path, value, cure):
-    with pytest.raises(PlanError) as caught:
-        plan_from_json(bad(path, value))
-    assert repr(path.rsplit("/", maxsplit=1)[-1]) in caught.value.what
-    assert caught.value.cure.startswith(cure)
+def test_plan_that_breaks_the_schema_is_refused_with_its_place_and_what_belongs_there():
+    for path, value, place, cure in (
+        ("steps/0/angel_deg", 12.0, "$.steps[0]", ""),
+        ("steps/0/stone", 1.5, "$.steps[0].stone", ""),
+        ("steps/0/side", "top", "$.steps[0].side", ""),
+        ("steps/0/kind", ..., "$.steps[0]", ""),
+        ("units/length", "m", "$.units.px_per_m", ""),
+        ("units/px_per_m", 200.0, "$.units.px_per_m", ""),
+        ("wall/width", 10**400, "$.wall.width", ""),
+        ("metrics/F_SF", None, "$.metrics.F_SF", ""),
+        ("seed", True, "$.seed", ""),
+        ("method", ..., "$", "What belongs there: Name of the planning method"),
+        ("steps/0/stone", ..., "$.steps[0]", "What belongs there: Id of a stone"),
+        ("colour", 1.0, "$", "Known there: schema, version, method, "),
+        ("steps/1/angle_deg", 1.0, "$.steps[1]", "Known there: step, kind, id, under, polygon, "),
+    ):
+        with pytest.raises(PlanError) as caught:
+            plan_from_json(bad(path, value))
+        error = caught.value
+        assert (error.code, error.where) == ("E205", f"plan: {place}")
+        assert error.what
+        assert error.cure
+        assert error.cure.startswith(cure)
+        assert not cure or repr(path.rsplit("/", maxsplit=1)[-1]) in error.what
+        assert len(str(error)) < 700
 
 
 def test_what_the_contract_does_not_ask_for_may_be_missing():
@@ -200,32 +188,29 @@ def test_what_the_contract_does_not_ask_for_may_be_missing():
     assert found.metrics.T_LEVEL is None
 
 
-@pytest.mark.parametrize(
-    ("text", "code"),
-    [
+def test_file_that_is_no_plan_is_refused(tmp_path):
+    path = tmp_path / "plan.json"
+    start = '{"schema": "drystone-plan/1"'
+    for text, code in (
         ("", "E203"),
         (b"\xff\xfe\x00", "E203"),
-        ('{"schema": "drystone-plan/1", "seed": NaN}', "E203"),
-        ('{"schema": "drystone-plan/1", "schema": "drystone-plan/1"}', "E203"),
+        (f'{start}, "seed": NaN}}', "E203"),
+        (f'{start}, "schema": "drystone-plan/1"}}', "E203"),
         ("[" * 100_000, "E203"),
-        ('{"schema": "drystone-plan/1", "seed": ' + "7" * 5000 + "}", "E203"),
+        (f'{start}, "seed": {"7" * 5000}}}', "E203"),
         ("{}", "E204"),
         ('{"schema": "drystone-plan/999"}', "E204"),
-        ('{"schema": "drystone-plan/1"}', "E205"),
-        ('{"schema": "drystone-plan/1", "seed": 1e999}', "E205"),
-    ],
-)
-def test_file_that_is_no_plan_is_refused(tmp_path, text, code):
-    path = tmp_path / "plan.json"
-    path.write_bytes(text if isinstance(text, bytes) else text.encode())
-    with pytest.raises(PlanError) as caught:
-        read_plan(path)
-    assert caught.value.code == code
-    assert str(path) in caught.value.where
-    path.unlink()
-    with pytest.raises(PlanError, match="E202") as caught:
-        read_plan(tmp_path)
-    assert str(path) in caught.value.where
+        (start + "}", "E205"),
+        (f'{start}, "seed": 1e999}}', "E205"),
+        (None, "E202"),
+    ):
+        path.unlink(missing_ok=True)
+        if text is not None:
+            path.write_bytes(text if isinstance(text, bytes) else text.encode())
+        with pytest.raises(PlanError) as caught:
+            read_plan(tmp_path if text is None else path)
+        assert caught.value.code == code
+        assert str(path) in caught.value.where
 
 
 def test_schema_is_valid_and_describes_every_field():
@@ -244,3 +229,164 @@ def test_schema_is_valid_and_describes_every_field():
     assert undescribed(schema, "$") == []
     for name, node in schema["$defs"].items():
         assert undescribed(node, name) == []
+
+
+@cache
+def planned(geometry="raster"):
+    settings = greedy({"geometry": geometry})
+    return ds.plan_wall(rubble(), 100, 36, scale=1.0, settings=settings, budget=1, px_per_m=100)
+
+
+def planned_of(source):
+    """A wall of few bricks that are read."""
+    settings = greedy({"geometry": "raster"})
+    return ds.plan_wall(ds.read_stones(source), 40, 20, settings=settings, budget=1)
+
+
+def contents(folder):
+    return {path.name: path.read_bytes() for path in folder.iterdir() if path.is_file()}
+
+
+@pytest.mark.parametrize("geometry", ["exact", "raster"])
+def test_commands_read_what_python_wrote(geometry, tmp_path, capsys):
+    result = planned(geometry)
+    path = ds.write_plan_folder(result, tmp_path / "new" / "out")
+    assert path == tmp_path / "new" / "out" / "plan.json"
+    assert ds.read_plan(path) == result.plan
+    wall = read_wall(path.parent)
+    assert (wall.labels == result.wall.labels).all()
+    assert (wall.blocks is not None) == (geometry == "exact")
+    for command in ("analyse", "measure", "craft"):
+        assert main([command, str(path.parent)]) == 0
+    assert main(["export", str(path.parent), "--to", "poses", "-o", str(tmp_path / "ex")]) == 0
+    capsys.readouterr()
+
+
+def test_no_file_of_another_wall_is_left_and_no_folder_made_that_cannot_be(tmp_path):
+    for geometry in ("exact", "raster"):
+        (tmp_path / "mine.txt").write_text("mine")
+        ds.write_plan_folder(planned(geometry), str(tmp_path))
+    known = {"mine.txt", "plan.json", "settings.toml", "wall.png"}
+    assert contents(tmp_path).keys() == known
+    for place in (tmp_path / "mine.txt", tmp_path / "mine.txt" / "in"):
+        with pytest.raises(ds.DrystoneError, match=r"E206 .*mine.txt"):
+            ds.write_plan_folder(planned(), place)
+
+
+def test_a_planner_becomes_a_plan_at_any_step():
+    planner = ds.Planner(bricks(4), Site(40, 20), seed=1, settings=greedy({}))
+    for step in planner.steps():
+        if step.number == 2:
+            break
+    half = ds.result_of(planner)
+    assert (half.status, len(half.plan.stone_steps)) == ("interrupted", 2)
+    assert half.plan.seed == 1
+    assert half.plan.stopped == "interrupted"  # as --resume looks for
+    for _ in planner.steps():
+        pass
+    whole = ds.result_of(planner)
+    assert whole.message == planner.stopped.text
+    again = ds.plan_wall(bricks(4), 40, 20, scale=1.0, seed=1, settings=greedy({}), budget=1)
+    assert whole.plan.steps == again.plan.steps
+    assert np.array_equal(whole.wall.labels, again.wall.labels)
+    assert whole.plan.settings["search"]["budget"] == 1
+
+
+def test_stones_of_a_few_px_are_not_taken_for_blended_ids(tmp_path):
+    few = ds.generate.RubbleSettings(count=14)
+    stones = ds.generate.rubble_stones(few, np.random.default_rng(3))
+    settings = greedy({"geometry": "raster"})
+    result = ds.plan_wall(stones, 200, 100, scale=0.12, settings=settings, budget=1)
+    ds.write_plan_folder(result, tmp_path)
+    with pytest.raises(ds.DrystoneError, match="E101"):
+        read_wall_image(tmp_path / "wall.png")
+    assert (read_wall(tmp_path).labels == result.wall.labels).all()
+
+
+def test_what_the_stones_were_read_from_is_never_replaced(tmp_path):
+    masks = tmp_path / "masks"
+    masks.mkdir()
+    for name, stone in zip(("wall.png", "other.png"), bricks(4), strict=False):
+        Image.fromarray(np.pad(stone.mask, 2)).save(masks / name)
+    for source in (tmp_path / "wall.tif", tmp_path / "wall.png", masks):
+        if source != masks:
+            write_labels(ds.generate.lay_out(bricks(4)), source)
+        place = masks if source == masks else tmp_path
+        before = contents(place)
+        with pytest.raises(ds.DrystoneError, match=r"E129 .*wall\.(tif|png)"):
+            ds.write_plan_folder(planned_of(source), place)
+        assert before == contents(place)
+        if source != masks:
+            source.unlink()
+
+
+def test_files_that_no_plan_left_stay(tmp_path):
+    mine = dict.fromkeys(("wall.tif", "blocks.json", "photo.jpg"), b"mine")
+    for name, data in mine.items():
+        (tmp_path / name).write_bytes(data)
+    ds.write_plan_folder(planned(), tmp_path)
+    assert contents(tmp_path).items() > mine.items()
+
+
+def test_the_photograph_of_an_earlier_plan_goes(tmp_path):
+    folder, photo = tmp_path / "out", tmp_path / "photo.jpg"
+    Image.fromarray(np.zeros((8, 8, 3), np.uint8)).save(photo)
+    folder.mkdir()
+    _, record = place_photo(photo, folder)
+    result = planned()
+    plan = replace(result.plan, source={**result.plan.source, **record})
+    ds.write_plan_folder(replace(result, plan=plan), folder)
+    assert (folder / "photo.jpg").exists()
+    ds.write_plan_folder(result, folder)
+    assert not (folder / "photo.jpg").exists()
+
+
+def test_stones_of_a_program_can_be_checked_with_a_file_of_them(tmp_path, capsys):
+    labels = ds.generate.lay_out(bricks(4))
+    ds.write_plan_folder(planned_of(labels), tmp_path / "out")
+    assert main(["check", str(tmp_path / "out")]) == 3
+    assert "E202" in (said := capsys.readouterr().err)
+    assert "given by a program" in said
+    for values, code in ((labels, 0), (np.flipud(labels), 5)):
+        write_labels(values, tmp_path / "stones.png")
+        words = ["check", str(tmp_path / "out"), "--stones", str(tmp_path / "stones.png")]
+        assert main(words) == code
+        if code == 0:
+            assert "there is no file to compare bytes with" in capsys.readouterr().out
+
+
+def built(scale=1.0, px_per_m=None):
+    """Return a wall with a wedge, and its model at another friction than that of its plan."""
+    wall = exact_example(scale, px_per_m).wall
+    return wall, model_of_outlines(wall.outlines, 0.7, SETTINGS.settle.contact_px)
+
+
+@pytest.mark.parametrize(("scale", "px_per_m"), [(1.0, None), (0.5, 137.0)])
+def test_what_is_written_is_the_model_in_the_units_of_the_plan(scale, px_per_m):
+    wall, model = built(scale, px_per_m)
+    units = px_per_m or 1.0
+    read = model_from_json(json.loads(json.dumps(blocks_to_json(wall, model))))
+    assert read.mu == model.mu == 0.7
+    assert [block.id for block in read.blocks] == [block.id for block in model.blocks]
+    for one, other in zip(read.blocks, model.blocks, strict=True):
+        assert one.area * units**2 == pytest.approx(other.area, rel=1e-9)
+        assert np.array(one.centroid) * units == pytest.approx(np.array(other.centroid))
+        assert not one.fixed
+    assert len(read.interfaces) == len(model.interfaces) > 6
+    for one, other in zip(read.interfaces, model.interfaces, strict=True):
+        assert (one.block, one.other, one.normal) == (other.block, other.other, other.normal)
+        assert one.points * units == pytest.approx(other.points)
+    assert any(interface.other == GROUND for interface in read.interfaces)
+    there, here = lateral_resistance(read), lateral_resistance(model)
+    for one, other in ((there.left, here.left), (there.right, here.right)):
+        assert one.alpha == pytest.approx(other.alpha, abs=1e-9)
+        assert other.success
+
+
+def test_a_wall_of_pixels_and_an_empty_one_have_no_blocks():
+    with pytest.raises(ValueError, match="are their pixels"):
+        blocks_to_json(example().wall, built()[1])
+    wall = Wall.empty(Site.from_source(40.0, 20.0, 0.5), exact=True)
+    read = blocks_to_json(wall, model_of_outlines(wall.outlines, 0.58, 0.1))
+    assert read == {"mu": 0.58, "blocks": [], "interfaces": []}
+    assert model_from_json(read).blocks == ()

@@ -56,33 +56,26 @@ def test_what_is_missing_is_downloaded_once_and_with_its_licence(served, tmp_pat
     folder = lay_down(tmp_path / "here", "toy/R.png")
     with serving(served) as address:
         first = fetch_set(toy_set(), folder, address=address)
+        (served / toy_set().files[1].address).unlink()
+        with pytest.raises(InputError, match=r"E161 .*404"):
+            fetch_set(toy_set(), tmp_path / "half", address=address)
     assert [(file.path, file.downloaded) for file in first] == [
         (folder / "toy" / "R.png", False), (folder / "toy" / "IR.png", True),
     ]  # fmt: skip
     assert {name: (folder / name).read_bytes() for name in CONTENTS} == CONTENTS
-    assert (folder / NOTICE).read_text(encoding="utf-8") == LICENCE
-    again = fetch_set(toy_set(), folder, address=nobody())
-    assert not any(file.downloaded for file in again)
+    assert not any(f.downloaded for f in fetch_set(toy_set(), folder, address=nobody()))
+    # What arrived before a failure has its licence too.
+    assert (tmp_path / "half" / "toy" / "R.png").exists()
+    for place in (folder, tmp_path / "half"):
+        assert (place / NOTICE).read_text(encoding="utf-8") == LICENCE
 
 
-def test_what_arrived_before_a_failure_has_its_licence(served, tmp_path):
-    (served / toy_set().files[1].address).unlink()
-    folder = tmp_path / "here"
-    with serving(served) as address, pytest.raises(InputError, match=r"E161 .*404"):
-        fetch_set(toy_set(), folder, address=address)
-    assert (folder / "toy" / "R.png").exists()
-    assert (folder / NOTICE).read_text(encoding="utf-8") == LICENCE
-
-
-def test_another_file_of_the_name_is_not_replaced(tmp_path):
+def test_neither_is_another_file_of_the_name_replaced_nor_other_contents_kept(served, tmp_path):
     mine = lay_down(tmp_path, "toy/R.png") / "toy" / "R.png"
     mine.write_bytes(b"my own")
     with pytest.raises(InputError, match=r"E160 .*R\.png.*Move it away"):
         fetch_set(toy_set(), tmp_path, address=nobody())
     assert mine.read_bytes() == b"my own"
-
-
-def test_a_download_of_other_contents_is_not_kept(served, tmp_path):
     (served / toy_set().files[0].address).write_bytes(b"something else")
     said = r"E160 .*another network, or save http"
     with serving(served) as address, pytest.raises(InputError, match=said):
@@ -90,21 +83,20 @@ def test_a_download_of_other_contents_is_not_kept(served, tmp_path):
     assert list((tmp_path / "here").rglob("*.*")) == []
 
 
-def test_no_network_says_what_to_do_by_hand(tmp_path):
-    address = nobody()
+def test_no_network_says_what_to_do_by_hand_but_a_full_disk_is_no_fault_of_it(
+    tmp_path, monkeypatch
+):
+    address, file = nobody(), toy_set().files[0]
     with pytest.raises(InputError, match=r"E161 .*refused.*DRYSTONE_DATA") as caught:
         fetch_set(toy_set(), tmp_path, address=address)
-    file = toy_set().files[0]
     assert f"save {address}/{file.address} as {tmp_path / file.name}" in caught.value.cure
 
-
-def test_a_full_disk_is_no_fault_of_the_network(tmp_path, monkeypatch):
     def full(*_, **__):
         raise OSError(28, "No space left on device", str(tmp_path))
 
     monkeypatch.setattr(pooch, "retrieve", full)
     with pytest.raises(OSError, match="No space left") as caught:
-        fetch_set(toy_set(), tmp_path, address=nobody())
+        fetch_set(toy_set(), tmp_path, address=address)
     assert caught.value.errno == 28
 
 
@@ -133,34 +125,22 @@ def test_the_option_wins_over_the_variable_and_that_over_the_cache(tmp_path, mon
     assert published_folder("given") == destination("given") == Path("given")
 
 
-@pytest.fixture
-def toys(monkeypatch, tmp_path):
-    """A folder with the files of a small set, which is a published one here."""
+def test_a_published_file_is_opened_only_with_its_contents(monkeypatch, tmp_path):
     monkeypatch.setattr(module, "SETS", {"toy": toy_set()})
-    return lay_down(tmp_path, *CONTENTS)
-
-
-def test_a_published_file_is_opened_only_with_its_contents(toys):
-    assert published_file(toys, "toy/R.png") == toys / "toy" / "R.png"
+    toys = lay_down(tmp_path, *CONTENTS)
+    (toys / "mine.png").write_bytes(b"mine")
+    for name in (*CONTENTS, "mine.png"):  # which is in no set
+        assert published_file(toys, name) == toys / name
     (toys / "toy" / "R.png").write_bytes(CONTENTS["toy/IR.png"])
     with pytest.raises(InputError) as caught:
         published_file(toys, "toy/R.png")
     assert (caught.value.code, caught.value.where) == ("E160", str(toys / "toy" / "R.png"))
     assert f"drystone fetch toy -o {toys}" in caught.value.cure
     assert toy_set().files[0].address in caught.value.cure
-    assert published_file(toys, "toy/IR.png").exists()
-
-
-def test_files_of_the_cache_are_fetched_again_without_naming_it(toys, monkeypatch):
+    # Files of the cache are fetched again without naming it, and what is missing is not checked.
     monkeypatch.setattr(pooch, "os_cache", lambda _: toys)
-    (toys / "toy" / "R.png").write_bytes(b"another")
     with pytest.raises(InputError, match=r"\(`drystone fetch toy`\)"):
         published_file(toys, "toy/R.png")
-
-
-def test_what_is_missing_or_in_no_set_is_not_checked(toys):
-    (toys / "mine.png").write_bytes(b"mine")
-    assert published_file(toys, "mine.png") == toys / "mine.png"
     (toys / "toy" / "R.png").unlink()
     assert not published_file(toys, "toy/R.png").exists()
 

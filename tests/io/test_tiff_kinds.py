@@ -65,22 +65,8 @@ def coded(table, compression, *, reverse):
     return data
 
 
-def tiff(
-    values,
-    bits=8,
-    compression=NONE,
-    *,
-    order="<",
-    sample=1,
-    predictor=1,
-    tile=None,
-    rows=None,
-    planar=False,
-    reverse=False,
-    photometric=1,
-    sparse=(),
-    tags=(),
-):
+def tiff(values, bits=8, compression=NONE, *, order="<", sample=1, predictor=1, tile=None,
+         rows=None, planar=False, reverse=False, photometric=1, sparse=(), tags=()):  # fmt: skip
     """The bytes of a TIFF; strips whose number is in `sparse` are not in it."""
     values = values.reshape(*values.shape[:2], -1)
     height, width, channels = values.shape
@@ -92,26 +78,27 @@ def tiff(
         if tile:
             part = np.pad(part, [(0, tile - part.shape[0]), (0, tile - part.shape[1]), (0, 0)])
         table = predicted(part, bits, order, predictor, sample)
-        pieces.append(coded(table, compression, reverse=reverse))
-    pieces = [b"" if number in sparse else piece for number, piece in enumerate(pieces)]
-    offsets = np.cumsum([8] + [len(piece) for piece in pieces])[:-1].tolist()
-    offsets = [offset if piece else 0 for offset, piece in zip(offsets, pieces, strict=True)]
+        missing = len(pieces) in sparse
+        pieces.append(b"" if missing else coded(table, compression, reverse=reverse))
+    sizes = list(map(len, pieces))
+    ends = 8 + np.cumsum(sizes)
+    offsets = [int(end - size) if size else 0 for end, size in zip(ends, sizes, strict=True)]
+    where = {278: [down], 273: offsets, 279: sizes}
+    if tile:
+        where = {322: [tile], 323: [tile], 324: offsets, 325: sizes}
     found = {
         256: [width], 257: [height], 258: [bits] * channels, 259: [compression],
         262: [photometric if channels == 1 else 2], 277: [channels], 284: [2 if planar else 1],
         317: [predictor], 339: [sample] * channels, 266: [2 if reverse else 1],
-        **({322: [tile], 323: [tile], 324: offsets, 325: list(map(len, pieces))} if tile else
-           {278: [down], 273: offsets, 279: list(map(len, pieces))}), **dict(tags),
+        **where, **dict(tags),
     }  # fmt: skip
     body = b"".join(pieces)
     body += b"\0" * (len(body) % 2)
     extra, entries, place = b"", b"", 8 + len(body) + 2 + 12 * len(found) + 4
     for tag, numbers in sorted(found.items()):
-        kind, data = 4, b""
-        if isinstance(numbers, bytes):
-            kind, count, data = 2, len(numbers), numbers
-        else:
-            count, data = len(numbers), struct.pack(f"{order}{len(numbers)}I", *numbers)
+        kind, count, data = 2, len(numbers), numbers
+        if not isinstance(numbers, bytes):
+            kind, data = 4, struct.pack(f"{order}{count}I", *numbers)
         if len(data) > 4:
             data, extra = struct.pack(f"{order}I", place + len(extra)), extra + data
         entries += struct.pack(f"{order}HHI", tag, kind, count) + data.ljust(4, b"\0")
@@ -125,16 +112,24 @@ def labels(bits):
 
 
 LAYOUTS = [{}, {"rows": 7}, {"tile": 16}]
+packings = pytest.mark.parametrize("compression", [NONE, LZW, DEFLATE, PACKBITS])
 
 
-@pytest.mark.parametrize("compression", [NONE, LZW, DEFLATE, PACKBITS])
+def read_back(values, bits, compression, **choices):
+    """Write and read numbers in all layouts, orders of bytes and combinations of choices."""
+    for layout, *chosen in product(LAYOUTS, *choices.values()):
+        options = layout | dict(zip(choices, chosen, strict=True))
+        found = decode(tiff(values, bits, compression, **options), LIMIT).values
+        found = found if found.dtype.kind == "f" else found.astype(np.int64)
+        np.testing.assert_array_equal(found, values.squeeze(), err_msg=str(options))
+
+
+@packings
 @pytest.mark.parametrize("bits", [1, 2, 4, 6, 8, 12, 16, 32])
 def test_whole_numbers(bits, compression):
-    for layout, order, reverse, photometric in product(LAYOUTS, "<>", (False, True), (0, 1)):
-        options = {**layout, "order": order, "reverse": reverse, "photometric": photometric}
-        data = tiff(labels(bits), bits, compression, **options)
-        found = decode(data, LIMIT).values.astype(np.int64)
-        np.testing.assert_array_equal(found, labels(bits), err_msg=str(options))
+    read_back(
+        labels(bits), bits, compression, order="<>", reverse=(False, True), photometric=(0, 1)
+    )
 
 
 @pytest.mark.parametrize("compression", [GROUP3, GROUP4])
@@ -145,71 +140,57 @@ def test_fax_codes(compression):
         np.testing.assert_array_equal(decode(data, LIMIT).values, mask)
 
 
-@pytest.mark.parametrize("compression", [NONE, LZW, DEFLATE, PACKBITS])
+@packings
 @pytest.mark.parametrize(("bits", "channels"), [(8, 1), (16, 1), (32, 1), (8, 3), (16, 3)])
 def test_differences(bits, compression, channels):
     values = np.dstack([labels(bits), labels(bits) // 2, labels(bits) // 3])[..., :channels]
-    for layout, order, planar in product(LAYOUTS, "<>", (False, True)):
-        options = {**layout, "order": order, "planar": planar, "predictor": 2}
-        found = decode(tiff(values, bits, compression, **options), LIMIT).values
-        np.testing.assert_array_equal(found, values.squeeze(), err_msg=str(options))
+    read_back(values, bits, compression, order="<>", planar=(False, True), predictor=[2])
 
 
-@pytest.mark.parametrize("compression", [NONE, LZW, DEFLATE, PACKBITS])
+@packings
 @pytest.mark.parametrize("bits", [16, 32, 64])
-@pytest.mark.parametrize("predictor", [1, 3])
-def test_numbers_with_a_point(bits, compression, predictor):
-    values = labels(8) + 0.5
-    for layout, order in product(LAYOUTS, "<>"):
-        data = tiff(values, bits, compression, sample=3, predictor=predictor, order=order, **layout)
-        np.testing.assert_array_equal(decode(data, LIMIT).values, values, err_msg=str(layout))
+def test_numbers_with_a_point(bits, compression):
+    read_back(labels(8) + 0.5, bits, compression, order="<>", predictor=(1, 3), sample=[3])
 
 
-@pytest.mark.parametrize("compression", [NONE, LZW, DEFLATE, PACKBITS])
+@packings
 @pytest.mark.parametrize("bits", [1, 4, 8, 16])
-@pytest.mark.parametrize("layout", LAYOUTS[1:])
-def test_what_a_sparse_file_leaves_out_is_ground(tmp_path, bits, compression, layout):
+def test_what_a_sparse_file_leaves_out_is_ground(tmp_path, bits, compression):
     values = two_stones(1, 1, np.int64)
     values[:16] = 0  # two strips or four tiles
-    sparse = range(2 if "rows" in layout else 4)
-    (tmp_path / "a.tif").write_bytes(tiff(values, bits, compression, sparse=sparse, **layout))
-    np.testing.assert_array_equal(decode((tmp_path / "a.tif").read_bytes(), LIMIT).values, values)
-    stones = read_stones(tmp_path / "a.tif")
-    assert stones.total_area_px == values.sum()
-    count = {"rows": "2 of 6", "tile": "4 of 12"}[next(iter(layout))]
-    assert f"{count} strips or tiles are not in the file (sparse)" in str(stones.notices[0])
+    for layout, missing, said in ((LAYOUTS[1], 2, "2 of 6"), (LAYOUTS[2], 4, "4 of 12")):
+        data = tiff(values, bits, compression, sparse=range(missing), **layout)
+        (tmp_path / "a.tif").write_bytes(data)
+        np.testing.assert_array_equal(decode(data, LIMIT).values, values)
+        stones = read_stones(tmp_path / "a.tif")
+        assert stones.total_area_px == values.sum()
+        assert f"{said} strips or tiles are not in the file (sparse)" in str(stones.notices[0])
 
 
-@pytest.mark.parametrize(
-    ("ground", "bits", "sample", "said"),
-    [(-9999, 32, 3, b"-9999"), (-9999, 16, 2, b"-9999"), (200, 8, 1, b"200 "), (9, 8, 1, b"nan")],
-)
-def test_no_data_of_gdal_is_ground(tmp_path, ground, bits, sample, said):
-    values = np.where(two_stones() == 0, ground, two_stones(3, 7, np.int64))
-    values[0, 0] = 0
-    data = tiff(values, bits, DEFLATE, rows=5, sample=sample, tags={42113: said + b"\0"})
-    (tmp_path / "a.tif").write_bytes(data)
-    if said == b"nan":  # no whole number is
-        with pytest.raises(InputError, match=r"E105 .*value 9 fills"):
-            read_stones(tmp_path / "a.tif")
-        return
-    stones = read_stones(tmp_path / "a.tif")
-    assert areas(stones) == {3: 375, 7: 600}
-    assert codes(stones) == ["W135"]
-    assert f"1424 px are {ground}, which the file says is no data" in str(stones.notices[0])
+def test_no_data_of_gdal_is_ground(tmp_path):
+    def read(ground, bits, sample, said):
+        values = np.where(two_stones() == 0, ground, two_stones(3, 7, np.int64))
+        values[0, 0] = 0
+        data = tiff(values, bits, DEFLATE, rows=5, sample=sample, tags={42113: said + b"\0"})
+        (tmp_path / "a.tif").write_bytes(data)
+        return read_stones(tmp_path / "a.tif")
+
+    for case in ((-9999, 32, 3, b"-9999"), (-9999, 16, 2, b"-9999"), (200, 8, 1, b"200 ")):
+        stones = read(*case)
+        assert areas(stones) == {3: 375, 7: 600}
+        assert codes(stones) == ["W135"]
+        assert f"1424 px are {case[0]}, which the file says is no data" in str(stones.notices[0])
+    with pytest.raises(InputError, match=r"E105 .*value 9 fills"):
+        read(9, 8, 1, b"nan")  # no whole number is
 
 
-@pytest.mark.parametrize(
-    ("values", "options", "text"),
-    [
-        (labels(4), {"bits": 4, "predictor": 2}, r"E107 .*predictor 2 of 4 bits"),
-        (labels(8), {"tags": {317: [3]}}, r"E107 .*predictor 3 of 8 bits"),
-        (labels(8), {"tags": {317: [34892]}}, r"E107 .*predictor 34892"),
-        (labels(8), {"tags": {279: [50]}}, r"E106 .*too short"),
-        (labels(4), {"bits": 4, "tags": {257: [90], 278: [90]}}, r"E106 .*too short"),
-    ],
-)
-def test_what_cannot_be_read_is_refused(values, options, text):
-    options = {"bits": 8, **options}
-    with pytest.raises(InputError, match=text):
-        decode(tiff(values, options.pop("bits"), **options), LIMIT)
+def test_what_cannot_be_read_is_refused():
+    for bits, options, text in (
+        (4, {"predictor": 2}, r"E107 .*predictor 2 of 4 bits"),
+        (8, {"tags": {317: [3]}}, r"E107 .*predictor 3 of 8 bits"),
+        (8, {"tags": {317: [34892]}}, r"E107 .*predictor 34892"),
+        (8, {"tags": {279: [50]}}, r"E106 .*too short"),
+        (4, {"tags": {257: [90], 278: [90]}}, r"E106 .*too short"),
+    ):
+        with pytest.raises(InputError, match=text):
+            decode(tiff(labels(bits), bits, **options), LIMIT)

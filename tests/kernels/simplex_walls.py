@@ -64,22 +64,18 @@ def added_blocks(model, placed, new):
     return Added(weights, edges_of(touching, blocks, model.mu), NOTHING)
 
 
-def steps(labels, candidates, at_once=1):
-    """What may be added, step by step, from the lowest block up; the first one is chosen."""
+def grown(labels, candidates=1, at_once=1):
+    """The optima of a wall that grows from the lowest block up, and what may be added to it.
+
+    The first of these is added; ends when the wall falls.
+    """
+    optima = {sign: Optimum.of_nothing(sign) for sign in SIGNS}
     model = model_from_labels(labels).model
     rest = sorted(model.blocks, key=lambda block: block.centroid[1])
-    placed = []
-    while len(rest) >= at_once:
-        groups = [rest[:at_once], *([block] for block in rest[at_once : at_once + candidates - 1])]
-        yield [added_blocks(model, placed, group) for group in groups]
-        placed += rest[:at_once]
-        rest = rest[at_once:]
-
-
-def grown(labels, candidates=1, at_once=1):
-    """The optima of a wall that grows, and what may be added to it; ends when it falls."""
-    optima = {sign: Optimum.of_nothing(sign) for sign in SIGNS}
-    for choices in steps(labels, candidates, at_once):
+    for placed in range(0, len(rest) - at_once + 1, at_once):
+        left = rest[placed:]
+        groups = [left[:at_once], *([block] for block in left[at_once : at_once + candidates - 1])]
+        choices = [added_blocks(model, rest[:placed], group) for group in groups]
         yield optima, choices
         answers = {sign: optima[sign].solved_with(choices[0]) for sign in SIGNS}
         if any(answer.status != simplex.OPTIMAL for answer in answers.values()):

@@ -14,29 +14,16 @@ from tests.naive import columns as naive
 from tests.strategies import repeatable
 
 
-def columns(found, length):
-    parts = [list(part) for part in zip(*found, strict=True)] or [[], [], [], []]
-    return cone_edges(*parts, length)
-
-
 def test_points_may_be_slices_of_one_array():
     everything = np.arange(24.0).reshape(4, 6)
-    wrench = [((1, 2.0, 3.0), (0, 5.0, 1.0)), ((2, 0.0, 1.0), GROUND_BODY)]
+    wrenches = [((1, 2.0, 3.0), (0, 5.0, 1.0)), ((2, 0.0, 1.0), GROUND_BODY)]
     slices = [everything[:2, 1:3], everything[1::2, ::3]]
-    found = list(zip(wrench, [(0.6, 0.8), (1.0, 0.0)], [0.5, 0.7], slices, strict=True))
-    whole = [(*part[:3], part[3].copy()) for part in found]
-    for fast, slow in zip(columns(found, 3.0), columns(whole, 3.0), strict=True):
+    found, whole = (
+        cone_edges(wrenches, [(0.6, 0.8), (1.0, 0.0)], [0.5, 0.7], points, 3.0)
+        for points in (slices, [part.copy() for part in slices])
+    )
+    for fast, slow in zip(found, whole, strict=True):
         assert np.array_equal(fast, slow)
-
-
-def test_what_does_not_fit_together_is_refused():
-    one = (((0, 0.0, 0.0), GROUND_BODY), (0.0, 1.0), 0.5, np.zeros((1, 2)))
-    parts = [[part] for part in one]
-    for k in range(4):
-        with pytest.raises(ValueError, match="interfaces"):
-            cone_edges(*parts[:k], parts[k] * 2, *parts[k + 1 :], 1.0)
-    with pytest.raises(ValueError, match="points"):
-        cone_edges(*parts[:3], [np.zeros((2, 3))], 1.0)
 
 
 def some_cones(rng, count, bodies):
@@ -97,12 +84,15 @@ def test_what_is_no_number_is_found_out_wherever_it_is():
     assert math.isnan(found.residual)
 
 
-def test_vectors_of_another_program_are_refused():
-    wall, weights, added, alpha, forces, velocity = some_answer(3, 4, 2)
-    for wrong in (
-        (forces[1:], velocity),
-        (np.append(forces, 0.0), velocity),
-        (forces, velocity[3:]),
-    ):
+def test_what_does_not_fit_together_is_refused():
+    one = (((0, 0.0, 0.0), GROUND_BODY), (0.0, 1.0), 0.5, np.zeros((1, 2)))
+    parts = [[part] for part in one]
+    for k in range(4):
+        with pytest.raises(ValueError, match="interfaces"):
+            cone_edges(*parts[:k], parts[k] * 2, *parts[k + 1 :], 1.0)
+    with pytest.raises(ValueError, match="points"):
+        cone_edges(*parts[:3], [np.zeros((2, 3))], 1.0)
+    *program, forces, velocity = some_answer(3, 4, 2)
+    for others in ((forces[1:], velocity), ([*forces, 0.0], velocity), (forces, velocity[3:])):
         with pytest.raises(ValueError, match="another program"):
-            figures(wall, weights, added, alpha, *wrong)
+            figures(*program, *map(np.array, others))

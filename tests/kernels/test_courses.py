@@ -1,4 +1,4 @@
-"""Courses, against loops over columns, and annealing, against one that lays all anew."""
+"""Courses against loops over columns, annealing against one that lays all anew, paths on pixels."""
 
 from itertools import product
 
@@ -7,10 +7,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drystone.kernels import courses
+from drystone.kernels import course_types, courses
 from drystone.kernels.backend import describe
 from drystone.kernels.course_moves import Dice, changed
 from drystone.kernels.course_types import (
+    PIXEL_UNITS,
     STARTS,
     TERMS,
     Arrangement,
@@ -19,13 +20,16 @@ from drystone.kernels.course_types import (
     Rules,
     Weights,
 )
-from drystone.kernels.courses import anneal, evaluate, ways_up
+from drystone.kernels.courses import anneal, evaluate, path_starts, ways_up
 from drystone.kernels.polygons import area_and_centroid
 from drystone.kernels.raster import turn
+from drystone.metrics import measure, paths
 from drystone.search.course_task import poses_of
 from tests.naive.courses import all_terms, annealed
-from tests.polygons import random_polygon
+from tests.polygons import box, random_polygon
 from tests.strategies import repeatable
+
+QUARTERS = (0, 90, 180, 270)
 
 
 def random_case(seed):
@@ -34,7 +38,7 @@ def random_case(seed):
     count = int(rng.integers(1, 13))
     size = float(rng.choice([0.7, 9.0, 30.0]))
     outlines = [random_polygon(rng, int(rng.integers(3, 9)), size) for _ in range(count)]
-    corners = [turn(outline, quarter) for outline in outlines for quarter in (0, 90, 180, 270)]
+    corners = [turn(outline, quarter) for outline in outlines for quarter in QUARTERS]
     areas = np.array([area_and_centroid(outline)[0] for outline in outlines])
     poses = poses_of(corners, areas, 1.0)
     columns = int(np.diff(poses.first).max() + rng.integers(0, 80))
@@ -122,7 +126,6 @@ def test_what_is_kept_of_old_courses_never_drifts():
         assert cost == evaluate(poses, found, ground, rules).cost
 
 
-@repeatable(40)
 @given(case=cases, seed=st.integers(0, 99))
 def test_changes_keep_every_stone_and_say_where_they_begin(case, seed):
     poses, plan, _, rules = case
@@ -215,3 +218,58 @@ def test_a_look_is_taken_every_round_and_what_it_raises_ends_the_annealing(
     assert (bits(found), same_cost) == (bits(unseen), cost)
     with pytest.raises(TimeoutError):
         anneal(*case, cooling._replace(evaluations=12), looked)
+
+
+RULES = Rules(Weights(*[1.0] * 17), 32, 0.0, 0, 0, 9, 1000.0)
+COLUMN_PX = 0.5
+
+
+def bond(shift_px, courses):
+    """Bricks of 60 x 20 px, each course shifted against that below."""
+    labels = np.zeros((20 * courses, 300), np.uint32)
+    for course in range(courses):
+        x = np.arange(300) + (course % 2) * shift_px
+        labels[20 * course : 20 * course + 20] = 1 + x // 60 + 10 * course
+    return labels
+
+
+def laid(rows):
+    """F_AV and F_AH of courses of bricks 20 px high, given by their widths, on nothing."""
+    widths = [width for row in rows for width in row]
+    corners = [turn(box(0, 0, width, 20), quarter) for width in widths for quarter in QUARTERS]
+    poses = poses_of(corners, np.array(widths, float) * 20, COLUMN_PX)
+    sizes = np.array([len(row) for row in rows], np.int32)
+    numbers = np.arange(len(widths), dtype=np.int32)
+    side, nothing = sum(rows[0]), (np.zeros((0, size), np.int32) for size in (2, STARTS, 3))
+    units = side * PIXEL_UNITS
+    ground = Ground(np.zeros(int(side / COLUMN_PX), np.int32), *nothing, units, units)
+    terms = evaluate(poses, Arrangement(numbers, 0 * numbers, sizes, sizes), ground, RULES).terms
+    return RULES.target - float(terms[-1, 16]), float(terms[-1, 15])
+
+
+@pytest.mark.parametrize("courses", [3, 4, 5])
+def test_bricks_are_judged_as_on_pixels(courses):
+    found = {}
+    for shift in (0, 10, 20, 30):
+        shifted = [60 - shift, 60, 60, 60, 60, shift] if shift else [60] * 5
+        across, along = laid([shifted if i % 2 else [60] * 5 for i in range(courses)])
+        measured = measure.measure_labels(bond(shift, courses))
+        # Joints are two px wide on pixels: corners are cut.
+        cut = 100 * 4 * courses / (20 * courses)
+        assert measured.F_AV - 1 <= across <= measured.F_AV + cut
+        assert measured.F_AH - 0.1 <= along <= measured.F_AH + 1.5
+        found[shift] = across
+    assert found[0] < found[10] < found[20] < found[30]
+
+
+def test_starts_are_those_of_the_metrics_and_there_is_room_for_all():
+    assert (course_types.FIRST_PX, STARTS) == (paths.FIRST_PX, paths.STARTS)
+    pads = paths.PAD_TOP + paths.PAD_BOTTOM, paths.PAD_LEFT + paths.PAD_RIGHT
+    assert pads == 2 * (course_types.PADDING_PX,)
+    # One more would be thrown away.
+    for side in range(3000):
+        rest = side + course_types.PADDING_PX - course_types.FIRST_PX
+        starts = path_starts(side * PIXEL_UNITS)
+        step = max(1, (side + course_types.PADDING_PX) // STARTS)
+        assert len(starts) == len(range(course_types.FIRST_PX, rest, step)) <= STARTS
+    assert path_starts(17 * PIXEL_UNITS) == []

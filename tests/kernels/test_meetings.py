@@ -9,15 +9,15 @@ from hypothesis import strategies as st
 from drystone.kernels.meetings import meetings
 from drystone.kernels.polygons import no_polygons
 from drystone.kernels.raster import turn
-from tests.polygons import simple_polygons
+from tests.polygons import box_of, simple_polygons
 from tests.strategies import repeatable
 
 TOLERANCE = 0.1
 
-brick = np.array([[0.0, 0.0], [40.0, 0.0], [40.0, 20.0], [0.0, 20.0]])
+brick = box_of(0.0, 0.0)
 spike = np.array([[0.0, 0.0], [5.0, 30.0], [-5.0, 30.0]])
 notch = np.array([[-40.0, 5.0], [40.0, 5.0], [40.0, 80.0], [0.0, 40.0], [-40.0, 80.0]])
-diamond = turn(np.array([[0.0, 0.0], [20.0, 0.0], [20.0, 20.0], [0.0, 20.0]]), 45.0)
+diamond = turn(box_of(0.0, 0.0, 20.0), 45.0)
 
 
 def at(x, y):
@@ -118,11 +118,9 @@ def test_the_ground_comes_first_then_others_in_their_order():
         (2, [[30.0, 20.01], [0.0, 20.01]], [0.0, -1.0]),
         (3, [[0.0, 20.01], [0.0, 0.01]], [1.0, 0.0]),
     ]
-
-
-def test_contacts_with_one_polygon_are_in_order_along_the_placed_one():
+    # With one polygon they are in order along the placed one.
     comb = np.array([[0, 0], [90, 0], [90, 20], [60, 20], [60, 10], [30, 10], [30, 20], [0, 20.0]])
-    plank = np.array([[0.0, 0.0], [90.0, 0.0], [90.0, 5.0], [0.0, 5.0]])
+    plank = box_of(0.0, 0.0, 90.0, 5.0)
     assert [p for _, p, _ in told(comb + at(0.0, 50.0), plank + at(0.0, 70.01))] == [
         [[90.0, 70.0], [60.0, 70.0]],
         [[30.0, 70.0], [0.0, 70.0]],
@@ -227,12 +225,9 @@ def test_the_normal_is_that_of_the_edge_under_the_nearer_end(lean):
         assert normal == pytest.approx(expected, abs=1e-6)
 
 
-def test_a_square_in_a_notch_touches_both_faces():
+def test_a_notch_is_touched_on_both_faces_and_a_flat_bend_is_told_once():
     found = told(diamond + at(0.0, 40.0142), notch, ndigits=3)
     assert [(len(p), n) for _, p, n in found] == [(2, [-0.707, 0.707]), (2, [0.707, 0.707])]
-
-
-def test_a_flat_bend_is_told_once():
     ((_, points, normal),) = told(spike + at(0.0, 30.31), PEAK)
     assert points == [[0.0, 30.31]]
     assert normal[1] > 0.999

@@ -25,40 +25,21 @@ from tests.strategies import blobs, landscapes, masks, repeatable
 kernel = both_ways(raster)
 FAST = compiled("raster")
 
-L_SHAPE = np.array([[1, 0, 0], [1, 0, 0], [1, 0, 0], [1, 1, 1]], bool)
 PHASES = st.integers(0, PHASE_STEPS - 1).map(lambda n: n / PHASE_STEPS)
 
 
-def test_quarter_turns_of_an_l_are_counter_clockwise_and_never_mirrored():
-    for quarters, corner in ((0, (0, 0)), (1, (-4, 0)), (2, (-3, -4)), (3, (0, -3)), (-1, (0, -3))):
-        turned, *found = rasterise(L_SHAPE, (0.0, 0.0), 90.0 * quarters, 1.0, (0.0, 0.0))
-        assert np.array_equal(turned, np.rot90(L_SHAPE, quarters))
-        assert tuple(found) == corner
-
-
 @given(angle=st.floats(-720, 720))
-@repeatable()
 def test_turn_is_a_rotation_by_the_angle(angle):
-    points = [(2.0, 0.0), (0.0, 1.0), (-3.0, 0.5)]
-    for (x, y), (u, v) in zip(turn(np.array(points), angle).tolist(), points, strict=True):
-        assert math.hypot(x, y) == pytest.approx(math.hypot(u, v))
-        difference = math.degrees(math.atan2(y, x) - math.atan2(v, u)) - angle
-        assert (difference + 180.0) % 360.0 - 180.0 == pytest.approx(0.0, abs=1e-9)
+    points = np.array([(2.0, 0.0), (0.0, 1.0), (-3.0, 0.5)])
+    expected = points @ (1.0, 1j) * np.exp(1j * math.radians(angle))
+    assert turn(points, angle) @ (1.0, 1j) == pytest.approx(expected, abs=1e-12)
 
 
 @given(value=st.floats(-1e6, 1e6))
-@repeatable()
 def test_quantise_is_exact_and_nearest(value):
     rounded = quantise(value)
     assert (rounded * PHASE_STEPS).is_integer()
     assert abs(rounded - value) <= 0.5 / PHASE_STEPS + 1e-9
-
-
-@repeatable()
-@given(mask=masks(), angle=st.floats(-180, 180), scale=st.sampled_from([0.05, 0.2, 0.6, 1.0]))
-def test_a_stone_never_vanishes_and_is_cropped(mask, angle, scale):
-    turned, _, _ = rasterise(mask, (0.3, 0.4), angle, scale, (0.25, 0.75))
-    assert all(edge.any() for edge in (turned[0], turned[-1], turned[:, 0], turned[:, -1]))
 
 
 def pixels_of(mask, left, bottom):
@@ -76,22 +57,22 @@ ANGLES = st.one_of(
 )
 
 
-@repeatable(50)
 @given(
     mask=masks(5),
     at=st.tuples(st.floats(0, 1), st.sampled_from([0.0, 0.5, 1.0])),
     angle=ANGLES,
-    scale=st.sampled_from([2.0, 1.0, 0.5, 0.3, 0.12]),
+    scale=st.sampled_from([2.0, 1.0, 0.5, 0.3, 0.12, 0.05]),
     phase=st.tuples(PHASES, PHASES),
 )
 def test_rasterising_is_counting_samples_one_by_one(mask, at, angle, scale, phase):
+    """A stone that no sample hits does not vanish either."""
     centre = (at[0] * mask.shape[1], at[1] * mask.shape[0])
+    turned, left, bottom = rasterise(mask, centre, angle, scale, phase)
+    assert all(edge.any() for edge in (turned[0], turned[-1], turned[:, 0], turned[:, -1]))
     expected = naive.rasterised(mask, centre, angle, scale, phase)
-    if expected:
-        assert pixels_of(*rasterise(mask, centre, angle, scale, phase)) == expected
+    assert not expected or pixels_of(turned, left, bottom) == expected
 
 
-@repeatable(40)
 @given(
     mask=masks(4),
     angle=ANGLES,
@@ -182,7 +163,6 @@ def test_numpy_takes_a_large_mask_in_bands(monkeypatch):
     assert whole[1:] == banded[1:]
 
 
-@repeatable()
 @given(
     points=st.lists(st.tuples(st.floats(-99, 99), st.floats(-99, 99)), min_size=1, max_size=9),
     angles=st.lists(ANGLES, min_size=1, max_size=4),

@@ -1,34 +1,132 @@
-"""Letting single stones go: how that ends, and what rules do."""
+"""Letting stones go: how that ends, what rules do, scenes with a known end, and random heaps."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 import pytest
+import shapely
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy.optimize import brentq, linprog, minimize_scalar
 
-from drystone.kernels.polygons import mirrored_polygon, no_polygons, polygon_edges
-from drystone.kernels.settling import Status, rest_margin, settle
-from tests.kernels.heaps import WIDTH, drops, rules
-from tests.naive.settling import placed
+from drystone.kernels.polygons import (
+    Points,
+    Polygons,
+    area_and_centroid,
+    mirrored_polygon,
+    no_polygons,
+    polygon_edges,
+)
+from drystone.kernels.seidel import solve
+from drystone.kernels.settling import SettlingRules, Status, rest_margin, settle
+from tests.naive.settling import (
+    Pose,
+    best_nearby,
+    contacts,
+    distances,
+    overlap_area,
+    placed,
+    unbalanced,
+)
 from tests.polygons import box_about as box
-from tests.polygons import centred
+from tests.polygons import centred, convex, random_polygon
 from tests.polygons import moved as at
 from tests.strategies import repeatable
+
+MU = 0.58
+WIDTH = 160.0
+STONES = 25
+seeds = st.integers(0, 2**32 - 1)
+
+
+class Drop(NamedTuple):
+    """A stone that is let go."""
+
+    outline: Points
+    pose: Pose
+    around: Polygons
+    rules: SettlingRules
+
+    def settled(self):
+        edges = polygon_edges(self.outline)
+        return settle(self.outline, edges, self.pose, self.around, WIDTH, self.rules)
+
+
+def rules(size, **changes):
+    """Those of exact settling, with lengths by a stone's size."""
+    usual = SettlingRules(
+        lean=0.3,
+        stop=-1.0,
+        mu=0.58,
+        clearance=0.01,
+        tolerance=0.1,
+        corner=0.3,
+        near=0.04 * size,
+        far=0.08 * size,
+        turn=math.radians(40.0),
+        shift=2.0 * size,
+        gain=4e-6 * size,
+        overlap=0.5,
+        steep=-1.0,
+        beyond=0.0,
+        sticks=False,
+        turns=True,
+        steps=200,
+    )
+    return usual._replace(**changes)
+
+
+WAYS = (
+    {},
+    {"lean": 0.0},
+    {"lean": 0.0, "stop": 0.2},
+    {"lean": 0.0, "stop": 0.2, "sticks": True},
+    {"turns": False},
+)
+"""Ways of settling: pushed aside, frictionless, as soon as it rests, rolling, without turning."""
+
+
+def random_outline(rng):
+    """Convex, concave, with many corners, a thin sliver, or one that is bent."""
+    kind, size = int(rng.integers(5)), float(rng.uniform(8.0, 50.0))
+    if kind == 0:
+        return centred(convex(random_polygon(rng, int(rng.integers(4, 20)), size)))
+    if kind == 1:
+        return box(size, 2.0 * float(rng.uniform(0.5, 2.0)))
+    if kind == 2:
+        a, b, bend = size / 2.0, float(rng.uniform(1.0, 3.0)), float(rng.uniform(-0.5, 0.5)) * size
+        return centred(
+            np.array([[-a, 0.0], [0.0, bend], [a, 0.0], [a, b], [0.0, bend + b], [-a, b]])
+        )
+    return centred(random_polygon(rng, int(rng.integers(3, 9) if kind == 3 else 30), size))
+
+
+def drops(seed, count):
+    """Stones let go one after the other; those that rest stay."""
+    rng = np.random.default_rng(seed)
+    around = no_polygons()
+    for _ in range(count):
+        outline = placed(random_outline(rng), (0.0, 0.0, float(rng.uniform(-3.0, 3.0))))
+        size = math.sqrt(area_and_centroid(outline)[0])
+        (left, low), (right, _) = outline.min(axis=0), outline.max(axis=0)
+        x = float(rng.uniform(0.1 - left, WIDTH - right - 0.1))
+        under = (around.boxes[:, 0] < x + right) & (around.boxes[:, 2] > x + left)
+        top = float(around.boxes[under, 3].max(initial=0.0))
+        way = WAYS[int(rng.integers(len(WAYS)))]
+        drop = Drop(outline, (x, top - float(low) + 0.05, 0.0), around, rules(size, **way))
+        found = drop.settled()
+        yield drop, found
+        if found.status == Status.RESTS:
+            around = around.added([placed(outline, found[1:4])])
+
 
 BRICK = box(20.0, 10.0)
 
 
-def let_go(outline, pose, others=(), width=200.0, **changes):
+def let_go(outline, pose, others=(), width=200.0, size=15.0, **changes):
     around = no_polygons().added(list(others))
-    return settle(outline, polygon_edges(outline), pose, around, width, rules(15.0, **changes))
-
-
-def test_it_does_not_move_aside_without_a_reason():
-    found = let_go(BRICK, (50.0, 30.0, 0.0), lean=0.0)
-    assert (found.x, found.angle) == (50.0, 0.0)
-    # Steps grow from .6 to 1.2 on the way.
-    assert 20 <= found.steps <= 28
+    return settle(outline, polygon_edges(outline), pose, around, width, rules(size, **changes))
 
 
 def test_what_overlaps_comes_apart_or_is_soon_given_up():
@@ -58,6 +156,13 @@ def test_ends_of_the_wall_block_but_carry_nothing():
 
 def test_statuses():
     low = at(BRICK, 50.0, 5.01)
+    # Straight down: steps grow from .6 to 1.2 on the way.
+    found = let_go(BRICK, (50.0, 30.0, 0.0), lean=0.0)
+    assert (found.status, found.x, found.angle) == (Status.RESTS, 50.0, 0.0)
+    assert 20 <= found.steps <= 28
+    # What is not a number does not rest.
+    for pose in ((math.nan, 9.0, 0.0), (50.0, math.nan, 0.0), (50.0, 9.0, math.nan)):
+        assert let_go(BRICK, pose).status != Status.RESTS
     # Gone too far aside, or turned too far.
     assert let_go(BRICK, (61.0, 20.0, 0.0), [low], turn=0.3).status == Status.FAR
     assert let_go(BRICK, (120.0, 20.0, 0.3), turn=0.1).status == Status.FAR
@@ -75,9 +180,7 @@ def test_statuses():
     found = let_go(BRICK, (52.0, 14.7, 0.0), [low], lean=0.0)
     assert found.status == Status.RESTS
     assert found[1:4] == pytest.approx((52.0, 15.02, 0.0), abs=1e-6)
-
-
-def test_a_bar_across_another_overlaps_although_no_corner_is_near():
+    # Over another, although no corner is near.
     lying, standing = box(60.0, 2.0), at(box(2.0, 60.0), 50.0, 31.0)
     found = let_go(lying, (50.0, 31.0, 0.0), [standing], lean=0.0)
     assert found.status == Status.OVERLAPS
@@ -127,7 +230,7 @@ def test_of_two_supports_the_one_nearer_to_the_centroid_sticks():
         assert (abs(moved - (50.0 + away[0])) < 0.02) == sticks
 
 
-def margin(outline, x, y, others=(), mu=0.58):
+def margin(outline, x, y, others=(), mu=MU):
     """That of an outline somewhere in a wall 200 wide."""
     around = no_polygons().added(list(others))
     return rest_margin(at(outline, x, y), (x, y), around, 200.0, mu, 0.1)
@@ -148,7 +251,7 @@ def test_margins_are_those_of_statics():
 
 
 @repeatable(15)
-@given(st.integers(0, 2**32 - 1))
+@given(seeds)
 def test_mirrored_scenes_settle_to_mirror_images(seed):
     for drop, found in drops(seed, 10):
         if drop.rules.lean or found.status != Status.RESTS:
@@ -162,14 +265,367 @@ def test_mirrored_scenes_settle_to_mirror_images(seed):
         assert mirrored == pytest.approx(found[1:4], abs=1e-6 * size)
 
 
-def test_what_is_not_a_number_does_not_rest():
-    for pose in ((math.nan, 9.0, 0.0), (50.0, math.nan, 0.0), (50.0, 9.0, math.nan)):
-        assert let_go(BRICK, pose).status != Status.RESTS
-
-
 @pytest.mark.parametrize("mu", [0.0, -0.5, math.nan])
 def test_without_friction_there_is_no_margin(mu):
     with pytest.raises(ValueError, match="mu must be positive"):
         margin(BRICK, 50.0, 5.02, mu=mu)
     with pytest.raises(ValueError, match="mu must be positive"):
         let_go(BRICK, (50.0, 9.0, 0.0), mu=mu)
+
+
+def exactly(outline, pose, others, size, width=400.0, **changes):
+    """Let go without slack: scenes with a known end, told to a millionth of the stone's size."""
+    close = {"clearance": 1e-9 * size, "tolerance": 1e-7 * size, "corner": 1e-7 * size}
+    near = {"overlap": 0.01 * size, "gain": 1e-12 * size, "turn": math.radians(60.0), "steps": 400}
+    how = {"lean": 0.0, **close, **near, **changes}
+    return let_go(outline, pose, others, width, size, **how)
+
+
+def round_stone(corners, radius, phase=0.0):
+    angle = 2.0 * np.pi * (np.arange(corners) + phase) / corners
+    return radius * np.column_stack([np.cos(angle), np.sin(angle)])
+
+
+def support(outline, angle, direction):
+    """How far a turned outline reaches along a direction."""
+    c, s = math.cos(angle), math.sin(angle)
+    x = c * outline[:, 0] - s * outline[:, 1]
+    y = s * outline[:, 0] + c * outline[:, 1]
+    return float((x * direction[0] + y * direction[1]).max())
+
+
+def least(function, near):
+    """Where a function is least: at or between some places close to each other."""
+    start, step = near[int(np.argmin([function(x) for x in near]))], near[1] - near[0]
+    bounds = start - step, start + step
+    return minimize_scalar(function, bounds=bounds, method="bounded", options={"xatol": 1e-12})
+
+
+def test_a_stack_of_bricks_with_offsets():
+    wall = []
+    for course, x in enumerate([50.0, 57.0, 48.5, 54.25, 46.0]):
+        found = exactly(BRICK, (x, 10.0 * course + 6.0, 0.0), wall, 20.0)
+        assert found.status == Status.RESTS
+        assert found[1:4] == pytest.approx((x, 10.0 * course + 5.0, 0.0), abs=2e-5)
+        wall.append(at(BRICK, found.x, found.y))
+
+
+@pytest.mark.parametrize("side", [-1, 1])
+def test_a_corbel_carries_itself_up_to_half_its_length(side):
+    low = [at(BRICK, 50.0, 5.0)]
+    inside = exactly(BRICK, (50.0 + side * 9.999, 16.0, 0.0), low, 20.0)
+    assert inside.status == Status.RESTS
+    assert inside[1:4] == pytest.approx((50.0 + side * 9.999, 15.0, 0.0), abs=2e-5)
+    # Gravity may lean by what is left of the support over the height of its centroid.
+    assert inside.margin == pytest.approx(0.001 / 5.0 / MU, abs=1e-6)
+    outside = exactly(BRICK, (50.0 + side * 10.001, 16.0, 0.0), low, 20.0, turn=0.1)
+    assert outside.status == Status.FAR
+    assert math.copysign(1.0, outside.angle) == -side
+
+
+@pytest.mark.parametrize(("corners", "others"), [(64, 48), (24, 36), (48, 25)])
+def test_a_lintel_on_two_round_stones_against_the_end_of_the_wall(corners, others):
+    lintel, width = box(80.0, 10.0), 120.0
+    rounds = [at(round_stone(corners, 20.0), 50.0, 20.0), at(round_stone(others, 14.0), 95.0, 14.0)]
+    points = np.concatenate(rounds)
+
+    def lowest(angle):
+        """Height of the centroid, when it touches the end and lies on the round stones."""
+        x = width - support(lintel, angle, (1.0, 0.0))
+        nx, ny = -math.sin(angle), math.cos(angle)
+        return float((points @ [nx, ny] + 5.0 - nx * x).max() / ny), x
+
+    found = exactly(lintel, (78.0, 60.0, 0.0), rounds, 80.0, width=width)
+    best = least(lambda angle: lowest(angle)[0], np.linspace(-0.5, 0.2, 2001))
+    assert found.status == Status.RESTS
+    assert found.touching >= 2
+    assert (found.y, found.angle) == pytest.approx((best.fun, best.x), abs=8e-5)
+    assert found.x == pytest.approx(lowest(best.x)[1], abs=8e-5)
+
+
+def notch(half_deg):
+    """Two blocks whose faces meet at the ground, at x = 100."""
+    out = 60.0 * math.tan(math.radians(half_deg))
+    left = [[100.0, 0.0], [100.0 - out, 60.0], [90.0 - out, 60.0], [90.0 - out, 0.0]]
+    right = [[100.0, 0.0], [110.0 + out, 0.0], [110.0 + out, 60.0], [100.0 + out, 60.0]]
+    return [np.array(left), np.array(right)]
+
+
+@pytest.mark.parametrize(
+    ("half_deg", "turn"), [(45.0, 0.1), (45.0, 0.785), (45.0, 1.0), (30.0, -0.3), (30.0, 0.6)]
+)
+def test_a_square_in_a_notch_lies_on_both_faces_or_on_one(half_deg, turn):
+    """In a notch of 60 degrees a corner reaches the other face."""
+    found = exactly(box(20.0, 20.0), (100.5, 60.0, turn), notch(half_deg), 20.0)
+    c, s = math.cos(math.radians(half_deg)), math.sin(math.radians(half_deg))
+    along = 10.0 if half_deg == 45.0 else 10.0 + 20.0 * s / c  # of the face, from the ground on
+    side = math.copysign(1.0, found.x - 100.0) if half_deg < 45.0 else 1.0
+    place = 100.0 + side * (along * s - 10.0 * c), along * c + 10.0 * s
+    assert found.status == Status.RESTS
+    assert found[1:3] == pytest.approx(place, abs=2e-5)
+    assert abs(found.angle) == pytest.approx(math.radians(half_deg), abs=2e-5)
+
+
+@pytest.mark.parametrize("half_deg", [45.0, 30.0, 22.0])
+@pytest.mark.parametrize(("corners", "turn"), [(64, 0.01), (24, 0.1), (33, 0.3)])
+def test_a_round_stone_in_a_notch(half_deg, corners, turn):
+    stone, half = round_stone(corners, 10.0), math.radians(half_deg)
+    sides = [(math.cos(half), -math.sin(half)), (-math.cos(half), -math.sin(half))]
+
+    def where(angle):
+        right, left = (support(stone, angle, side) for side in sides)
+        return (right + left) / (2.0 * math.sin(half)), (left - right) / (2.0 * math.cos(half))
+
+    found = exactly(stone, (101.0, 60.0, turn), notch(half_deg), 20.0)
+    y, x = where(found.angle)
+    assert found.status == Status.RESTS
+    assert found[1:3] == pytest.approx((100.0 + x, y), abs=2e-5)
+    # The lowest of the ways to turn it from there to either side.
+    near = found.angle + np.linspace(-0.3, 0.3, 2001) * 2.0 * np.pi / corners
+    best = least(lambda angle: where(angle)[0], near)
+    assert found.angle == pytest.approx(best.x, abs=1e-6)
+    assert found.y == pytest.approx(best.fun, abs=2e-5)
+
+
+def leaning(length, thickness, angle, post_x, size):
+    """A ladder that touches the ground and, on its right, a post; and those two points."""
+    ladder = box(length, thickness)
+    c, s = math.cos(angle), math.sin(angle)
+    corners = ladder @ np.array([[c, s], [-s, c]])
+    gap = 1e-9 * size
+    x, y = post_x - gap - corners[:, 0].max(), gap - corners[:, 1].min()
+    foot = corners[int(np.argmin(corners[:, 1]))] + (x, y)
+    head = corners[int(np.argmax(corners[:, 0]))] + (x, y)
+    return ladder, (float(x), float(y), angle), foot, head
+
+
+POST = at(box(10.0, 80.0), 105.0, 40.0)
+
+
+def begins_to_rest(length, thickness):
+    """The angle from which on a ladder rests where it is put, by bisection."""
+
+    def rests(angle):
+        ladder, pose, _, _ = leaning(length, thickness, angle, 100.0, length)
+        found = exactly(ladder, pose, [POST], length, stop=0.0, steps=1)
+        return found.status == Status.RESTS and found.steps == 0
+
+    low, high = 0.3, 1.4
+    assert rests(high)
+    assert not rests(low)
+    while high - low > 1e-9:
+        middle = (low + high) / 2.0
+        low, high = (low, middle) if rests(middle) else (middle, high)
+    return high
+
+
+@pytest.mark.parametrize("thickness", [4e-5, 5.0])
+def test_a_ladder_rests_from_the_angle_on_where_lines_of_force_meet(thickness):
+    def spare(angle):
+        """Where both cones of friction cross the vertical through the centroid."""
+        _, (x, _, _), foot, head = leaning(40.0, thickness, angle, 100.0, 40.0)
+        return head[1] + MU * (head[0] - x) - abs(x - foot[0]) / MU
+
+    expected = brentq(spare, 0.3, 1.2, xtol=1e-13)
+    assert begins_to_rest(40.0, thickness) == pytest.approx(expected, abs=1e-6)
+    if thickness < 1e-4:  # as thin as the clearance allows, it is that of the textbook
+        assert expected == pytest.approx(math.atan((1.0 - MU**2) / (2.0 * MU)), abs=2e-6)
+
+
+def test_a_ladder_without_friction_slides_until_it_lies():
+    ladder, pose, _, _ = leaning(40.0, 2.0, 1.1, 100.0, 40.0)
+    found = exactly(ladder, pose, [POST], 40.0, turn=9.0, shift=400.0)
+    assert found.status == Status.RESTS
+    assert (found.y, found.angle) == pytest.approx((1.0, 0.0), abs=4e-5)
+    stopped = exactly(ladder, pose, [POST], 40.0, stop=0.0)
+    assert stopped[:4] == (Status.RESTS, *pose)
+
+
+@pytest.mark.parametrize("stone", [BRICK, round_stone(36, 10.0, 0.5)])
+def test_leaning_gravity_pushes_a_stone_against_the_end_of_the_wall(stone):
+    found = exactly(stone, (25.0, 12.0, 0.0), [], 20.0, lean=0.3, turn=9.0)
+
+    def reach(angle):
+        return support(stone, angle, (-1.0, 0.0)), support(stone, angle, (0.0, -1.0))
+
+    def energy(angle):
+        return 0.3 * reach(angle)[0] + reach(angle)[1]
+
+    assert found.status == Status.RESTS
+    assert found[1:3] == pytest.approx(reach(found.angle), abs=2e-5)
+    near = [energy(found.angle + turn) for turn in np.linspace(-0.02, 0.02, 41)]
+    assert energy(found.angle) <= min(near) + 2e-5
+
+
+@repeatable(25)
+@given(seeds)
+def test_settled_stones_lie_over_nothing_and_rest(seed):
+    rested = 0
+    for drop, found in drops(seed, STONES):
+        # They are let go where nothing is, and nothing can come of that but a free pose.
+        assert found.status != Status.OVERLAPS
+        corners = placed(drop.outline, found[1:4])
+        apart = min(distances(corners, drop.around, WIDTH))
+        assert apart >= drop.rules.clearance / 2 - 1e-9
+        assert found.gap <= apart + 1e-9 or found.gap > drop.rules.tolerance
+        assert overlap_area(corners, drop.around) == 0.0
+        if found.status == Status.RESTS:
+            rested += 1
+            assert found.margin == pytest.approx(
+                rest_margin(corners, found[1:3], drop.around, WIDTH, 0.58, 0.1), abs=1e-6
+            )
+        if found.status in (Status.RESTS, Status.FALLS):
+            agrees_with_forces(drop, found)
+    assert rested >= 3
+
+
+def agrees_with_forces(drop, found):
+    """Forces at the contacts carry the weight of what rests, and of nothing else."""
+    corners = placed(drop.outline, found[1:4])
+    sure, doubtful = contacts(corners, drop.around, drop.rules.tolerance)
+    arm = float(np.hypot(*drop.outline.T).max())
+    more = [contact for pair in doubtful for contact in pair]
+    left = unbalanced(sure + more, found[1:3], arm, drop.rules.mu)
+    if found.status == Status.RESTS:
+        assert left <= 2e-6
+    elif not doubtful:
+        assert left > 0.5e-6
+
+
+@repeatable(6)
+@given(seeds)
+def test_no_small_motion_goes_down_from_where_nothing_is_gained(seed):
+    for drop, found in drops(seed, 8):
+        rules = drop.rules
+        if found.status not in (Status.RESTS, Status.FALLS) or rules.stop >= 0 or not rules.turns:
+            continue
+        size = rules.near / 0.04
+        outline, pose = drop.outline, found[1:4]
+        down = best_nearby(outline, pose, drop.around, WIDTH, rules.lean, rules.clearance)
+        assert down <= 1e-6 * size, (drop, found)
+
+
+@repeatable(4)
+@given(seeds)
+def test_steps_pass_through_nothing(seed):
+    for drop, _ in drops(seed, STONES):
+        rules = drop.rules._replace(steps=1, near=drop.rules.far, stop=-1.0)
+        size = drop.rules.near / 0.04
+        others = shapely.union_all(
+            [shapely.Polygon(drop.around.polygon(i)) for i in range(len(drop.around))]
+        )
+        pose = drop.pose
+        for _ in range(12):
+            after = drop._replace(pose=pose, rules=rules).settled()[1:4]
+            if after == pose:
+                break
+            assert after[1] + rules.lean * after[0] < pose[1] + rules.lean * pose[0]
+            for share in (0.2, 0.4, 0.6, 0.8):
+                between = tuple(np.array(pose) + share * np.subtract(after, pose))
+                shape = shapely.Polygon(placed(drop.outline, between))
+                # Turns bulge by at most the square of a radius over twice the arm.
+                assert not shape.buffer(-0.02 * size).intersects(others)
+                common = shape.intersection(others)
+                assert common.area <= 0.02 * size * common.length + 1e-9
+            pose = after
+
+
+@pytest.mark.parametrize(
+    ("seed", "number", "times"),
+    [(0, 2, 1), (0, 10, 4), (5, 15, 1), (12, 14, 1), (52, 2, 4)],
+)
+def test_every_step_goes_down_to_a_free_pose(seed, number, times):
+    """Stones whose moves come too near, gain nothing in the end, or cross others."""
+    drop, _ = list(drops(seed, number + 1))[number]
+    near, far = times * drop.rules.near, times * drop.rules.far
+    energy = math.inf
+    for steps in range(1, 25):
+        rules = drop.rules._replace(near=near, far=far, steps=steps)
+        found = drop._replace(rules=rules).settled()
+        assert found.status != Status.OVERLAPS
+        assert found.gap >= rules.clearance / 2
+        assert found.y + rules.lean * found.x <= energy
+        energy = found.y + rules.lean * found.x
+
+
+@pytest.mark.parametrize(("seed", "times"), [(5022, 4), (5030, 8)])
+def test_steps_that_are_far_too_long_end_nowhere_else(seed, times):
+    for drop, _ in drops(seed, STONES):
+        near, far = times * drop.rules.near, times * drop.rules.far
+        rules = drop.rules._replace(near=near, far=far, turn=9.0, shift=99.0)
+        found = drop._replace(rules=rules).settled()
+        assert found.status != Status.OVERLAPS
+        assert overlap_area(placed(drop.outline, found[1:4]), drop.around) == 0.0
+
+
+@st.composite
+def programs(draw):
+    """Rows of unit normals; tight, loose, doubled, opposite, or through one point."""
+    rng = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
+    count = draw(st.integers(0, 24))
+    rows = rng.normal(size=(count, 4))
+    rows[:, :3] /= np.linalg.norm(rows[:, :3], axis=1, keepdims=True)
+    kind = draw(st.sampled_from(["any", "feasible", "through 0", "slabs", "flat"]))
+    if kind in ("feasible", "flat"):
+        rows[:, 3] = np.abs(rows[:, 3])
+    if kind == "through 0":
+        rows[:, 3] = 0.0
+    if kind == "slabs":
+        other = -rows * [1, 1, 1, rng.choice([1.0, -1.0, 0.5])]
+        rows = np.vstack([rows, other, rows])
+    if kind == "flat":
+        rows[:, 2] = 0.0
+    gain = rng.normal(size=3) if draw(st.booleans()) else np.array([-0.3, -1.0, 0.0])
+    return np.ascontiguousarray(rows), gain, rng.uniform(0.0, 3.0, 3) * rng.integers(0, 2, 3) + 0.1
+
+
+def test_gains_what_scipy_gains():
+    seen = set()
+
+    @repeatable(200)
+    @given(programs())
+    def check(program):
+        rows, gain, most = program
+        found = solve(rows, gain, most)
+        expected = linprog(
+            -gain, rows[:, :3], rows[:, 3], bounds=list(zip(-most, most, strict=True))
+        )
+        feasible = expected.status == 0
+        seen.add(feasible)
+        assert feasible == (found is not None)
+        if found is not None:
+            x = np.array(found)
+            assert (rows[:, :3] @ x <= rows[:, 3] + 1e-7).all()
+            assert (np.abs(x) <= most + 1e-7).all()
+            assert gain @ x == pytest.approx(-expected.fun, abs=1e-6)
+
+    check()
+    assert seen == {True, False}
+
+
+def test_where_nothing_is_gained_nothing_moves():
+    down, most = np.array([0.0, -1.0, 0.0]), np.full(3, 5.0)
+    assert solve(np.zeros((0, 4)), down, most) == (0.0, -5.0, 0.0)
+    assert solve(np.zeros((0, 4)), np.array([1e-13, -1.0, -1e-13]), most) == (0.0, -5.0, 0.0)
+    # A flat support, and rounding in what is gained along it.
+    flat = np.array([[0.0, -1.0, 0.5, 1.0], [0.0, -1.0, -0.5, 1.0], [1e-17, -1.0, 0.2, 1.0]])
+    assert solve(flat, down, most) == pytest.approx((0.0, -1.0, 0.0), abs=1e-12)
+    # The smallest move that keeps off from a side.
+    aside = np.vstack([flat, [-1.0, 0.0, 0.0, -2.0]])
+    assert solve(aside, down, most) == pytest.approx((2.0, -1.0, 0.0), abs=1e-12)
+    for sign in (1.0, -1.0):
+        both = np.array([[0.0, -1.0, 0.0, 1.0], [-sign, 0.0, 0.0, -2.0], [0.0, 0.0, -sign, -1.0]])
+        assert solve(both, down, most) == pytest.approx((2.0 * sign, -1.0, sign), abs=1e-12)
+
+
+def test_rows_without_coefficients_only_say_whether_there_is_a_solution():
+    gain, most = np.array([1.0, 1.0, 1.0]), np.ones(3)
+    assert solve(np.array([[0.0, 0.0, 0.0, 0.0]]), gain, most) == (1.0, 1.0, 1.0)
+    assert solve(np.array([[0.0, 0.0, 0.0, -1.0]]), gain, most) is None
+
+
+def test_arrays_of_other_shapes_are_refused():
+    with pytest.raises(ValueError, match="three numbers"):
+        solve(np.zeros((2, 3)), np.zeros(3), np.zeros(3))
+    with pytest.raises(ValueError, match="three numbers"):
+        solve(np.zeros((2, 4)), np.zeros(2), np.zeros(3))

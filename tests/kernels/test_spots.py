@@ -1,4 +1,7 @@
-"""What places are worth, one position after the other, and the best against all sorted (§3.6)."""
+"""What rays meet and places are worth, and the best places against all sorted (§3.6).
+
+Where masks rest is in tests/placement.
+"""
 
 from types import SimpleNamespace
 
@@ -23,7 +26,30 @@ from drystone.kernels.spots import (
     threshold,
 )
 from tests.naive import placement as naive
+from tests.naive.rays import local_filling_ratio
 from tests.strategies import landscapes, masks, posed_on_walls, repeatable
+
+
+@repeatable(80)
+@given(occupied=landscapes(14), mask=masks())
+def test_shares_and_gaps_are_those_of_rays_shot_one_by_one(occupied, mask):
+    at = naive.all_positions(occupied, mask)
+    positions = np.array(at, np.int64).reshape(-1, 2)
+    outline, sums = silhouette(mask), RaySums(occupied)
+    expected = [local_filling_ratio(occupied, mask, *place) for place in at]
+    # A share is one division of whole numbers: nothing is rounded twice.
+    assert sums.filled_share(outline, positions).tolist() == expected
+    gaps = [naive.gap_beside(occupied, mask, place) for place in at]
+    assert sums.empty_beside(outline, positions).tolist() == gaps
+
+
+def test_high_walls():
+    occupied = np.ones((602, 5), bool)
+    occupied[:2] = occupied[300] = False
+    block = silhouette(np.ones((2, 2), bool))
+    found = RaySums(occupied).filled_share(block, np.array([[0, 3]]))
+    assert found.tolist() == [2 * 599 / (2 * 600 + 2 * 3)]
+
 
 wanted = st.sampled_from([1, 2, 5, 1000])
 WEIGHTS = [(0, 0, 0, 0), (0, 0, -0.5, 0), (0, -0.5, 0, 0), (1.6, 0.5, 0.7, 0.25), (0, 1, 1, -0.5)]

@@ -19,10 +19,6 @@ def test_tries_all_combinations(stones, limit):
     assert unfillable(Counter(stones), limit).tolist() == naive.unfillable(stones, limit)
 
 
-def test_very_many_stones_are_as_many_as_fit():
+def test_very_many_stones_are_as_many_as_fit_and_none_fill_nothing():
     assert unfillable({(7,): 10**9}, 15).tolist() == unfillable({(7,): 2}, 15).tolist()
-
-
-def test_no_stone_fills_nothing():
-    assert unfillable({}, 3).tolist() == [0, 1, 2, 3]
     assert unfillable({(2,): 0}, 3).tolist() == [0, 1, 2, 3]

@@ -120,15 +120,9 @@ def test_a_filling_has_the_pixels_of_the_gap_that_is_lowest(scene, columns, size
     assert pixels[[0, -1]].any(axis=1).all()
 
 
-@pytest.mark.parametrize("columns", [(0, -1), (-2, 3), (0, 4)])
-def test_columns_outside_are_refused(columns):
-    """Of slices from the end NumPy would make something else."""
-    with pytest.raises(ValueError, match="columns"):
-        gap_filling(np.zeros((6, 6), bool), np.ones((2, 3), bool), 0, 0, columns, (1, 3))
-
-
 @pytest.mark.parametrize("at", [(-1, 0), (0, -1), (3, 0), (0, 4)])
-def test_a_mask_outside_is_refused(at):
+def test_masks_and_columns_outside_are_refused(at):
+    """Of slices from the end NumPy would make something else."""
     occupied, mask = np.zeros((4, 5), bool), np.ones((2, 2), bool)
     for function, *more in ((support_ends,), (free_beside,), (gap_filling, (0, 2), (1, 3))):
         with pytest.raises(ValueError, match="leaves the landscape"):
@@ -136,3 +130,6 @@ def test_a_mask_outside_is_refused(at):
     if at[0] < 3:
         with pytest.raises(ValueError, match="leave the landscape"):
             free_below(occupied, lowest(mask), *at)
+    for columns in ((0, -1), (-2, 2), (0, 3)):
+        with pytest.raises(ValueError, match="columns"):
+            gap_filling(occupied, mask, 0, 0, columns, (1, 3))

@@ -108,14 +108,10 @@ def outcomes(folder):
     return {name: (data["figures"], data["plan"]) for name, data in runs.items()}
 
 
-def item(name):
-    """Return what reads an item of `reproduce`, its runs included, without times."""
-
-    def read(folder):
-        record = json.loads((folder / name / f"{name}.json").read_bytes())
-        return outcomes(folder), record["ours"], record["tables"]
-
-    return read
+def figure(folder):
+    """Return what an item of `reproduce` says, its runs included, without times."""
+    record = json.loads((folder / "figB34" / "figB34.json").read_bytes())
+    return outcomes(folder), record["ours"], record["tables"]
 
 
 def ran(case, folder, *more):
@@ -247,9 +243,10 @@ def _merits(log):
 
 def made_stones(path, count, width, height, courses):
     """Write a generated stone set."""
-    settings = (f"width_px={width}", f"height_px={height}", f"courses={courses}")
-    more = [word for setting in settings for word in ("--set", setting)]
-    code, words = called(["generate", "rubble", "--count", str(count), "-o", str(path), *more])
+    settings = f"--set width_px={width} --set height_px={height} --set courses={courses}"
+    code, words = called(
+        ["generate", "rubble", "--count", str(count), "-o", str(path), *settings.split()]
+    )
     assert code == 0, words
     return path
 
@@ -261,7 +258,7 @@ def cases(folder):
     search = f"plan {few} --wall 130x50 --scale 1 --seed 1 -o {{folder}} "
     paper = f"plan {many} --wall 400x160 --scale 1 --method paper -o {{folder}}"
     bench = "bench --suite bricks --policy paper random --quick --jobs 2 --store {folder}"
-    figure = "reproduce figB34 --quick -o {folder} --jobs 2"
+    item = "reproduce figB34 --quick -o {folder} --jobs 2"
     return [
         Case(name, tuple(words.split()), ("--resume",) if stones else (), result, stones)
         for name, words, result, stones in (
@@ -270,6 +267,6 @@ def cases(folder):
             ("best, time", search + "--time 10", None, few),
             ("best, jobs 2", search + "--budget 60 --jobs 2", plan_bytes, few),
             ("bench", bench, outcomes, None),
-            ("reproduce", figure, item("figB34"), None),
+            ("reproduce", item, figure, None),
         )
     ]

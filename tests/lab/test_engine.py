@@ -1,10 +1,11 @@
-"""Walls on outlines in the engine: bricks slide where friction ends."""
+"""Walls in the engine: bricks slide where friction ends, and what counts as agreement."""
 
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
-from drystone_lab import engine
+from drystone_lab import engine, tilt
 from drystone_lab.engine import EngineWall
 from drystone_lab.table import BenchSettings
 from drystone_lab.walls import BRICKS
@@ -50,3 +51,35 @@ def test_a_wall_that_does_not_rest_is_not_tilted(monkeypatch):
     monkeypatch.setattr(engine, "build_up", lambda *_: None)
     monkeypatch.setattr(engine, "tilt_of", lambda _: None)
     assert engine._judged(BRICKS, BRICKS.stones(None), 0).tilts == (None, None)
+
+
+@pytest.mark.parametrize(
+    ("factors", "motion", "fell", "agreement"),
+    [
+        ((0.5, 0.4), (0.39, 0.41), False, "yes"),
+        ((0.5, 0.4), (0.41, 0.42), False, "no"),
+        ((0.5, 0.4), None, False, "no"),
+        ((0.5, None), (0.1, 0.2), False, "no"),
+        ((None, None), None, True, "both fall"),
+        ((0.5, 0.4), None, True, "no"),
+        ((0.5, 0.4), (0.0, 0.5), True, "no"),
+        ((None, None), (0.1, 0.2), False, "no"),
+    ],
+)
+def test_what_counts_as_agreement(factors, motion, fell, agreement):
+    simulated = SimpleNamespace(
+        direction="left", fell_at_rest=fell, settled_shift=0.1, interval=lambda _: motion
+    )
+    both = dict(zip(("associative", "nonassociative"), factors, strict=True))
+    assert tilt._row("wall", SimpleNamespace(simulated=simulated, **both))[5] == agreement
+
+
+def test_a_picture_is_tilted_and_predicted():
+    """A stone of 20 x 40 px topples at .5, whatever the flow rule."""
+    pytest.importorskip("pymunk", reason="pymunk is not installed (extra `physics`)")
+    wall = SimpleNamespace(name="stone", stages=(np.ones((40, 20), np.uint32),), mu=0.58)
+    for row in tilt._rows(wall, BenchSettings(quick=True)):
+        assert row[2:4] == pytest.approx((0.5, 0.5))
+        low, high = (float(end) for end in row[4].split(" to "))
+        assert low == pytest.approx(0.5, abs=0.01)
+        assert low < high < low + 0.01

@@ -7,10 +7,14 @@ from scipy.stats import binom
 from drystone_lab.paired import median_difference
 
 
-def test_pairs_are_kept_together():
+def test_pairs_are_kept_together_and_left_out_without_a_value():
     some, others = [10.0, 200.0, 3000.0], [9.0, 198.0, 2997.0]
     assert median_difference(some, others) == "+2 (+1 to +3)"
     assert median_difference(others, some) == "-2 (-3 to -1)"
+    found = median_difference([1.0, None, 4.0], [0.0, 1.0, None])
+    assert found == "+1 (+1 to +1)"
+    assert median_difference([None], [1.0]) is None
+    assert median_difference([], []) is None
 
 
 @pytest.mark.parametrize("count", [5, 9, 15])
@@ -20,10 +24,3 @@ def test_the_interval_is_that_of_all_draws(count):
     low, high = np.searchsorted(at_most, [0.025, 0.975])
     found = median_difference(list(range(count)), [0.0] * count)
     assert found == f"+{count // 2} ({low:+} to {high:+})"
-
-
-def test_pairs_without_a_value_are_left_out():
-    found = median_difference([1.0, None, 4.0], [0.0, 1.0, None])
-    assert found == "+1 (+1 to +1)"
-    assert median_difference([None], [1.0]) is None
-    assert median_difference([], []) is None

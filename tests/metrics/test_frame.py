@@ -38,9 +38,12 @@ def test_end_lines(left, width, width_px, ends, stone):
     assert np.flatnonzero(frame.labels[0]).tolist() == list(stone)
 
 
-def test_an_image_without_stones_says_so():
+def test_no_stones_and_no_scale_are_refused_and_sizes_round_half_up():
     with pytest.raises(LabelImageError, match=r"E104 .*30x20 px are 0"):
         frame_wall(np.zeros((20, 30), np.uint32))
+    assert reduce_labels(np.ones((5, 7), np.uint8), 0.5).shape == (3, 4)
+    with pytest.raises(ValueError, match="scale must be positive"):
+        reduce_labels(np.ones((5, 7), np.uint8), 0.0)
 
 
 @repeatable()
@@ -56,9 +59,3 @@ def test_reduced_is_its_slow_twin_and_a_copy(labels, scale):
     assert np.array_equal(reduced, naive.reduce_labels(labels, scale))
     assert reduced.dtype == labels.dtype
     assert not np.shares_memory(reduced, labels)
-
-
-def test_a_scale_must_be_positive_and_sizes_round_half_up():
-    assert reduce_labels(np.ones((5, 7), np.uint8), 0.5).shape == (3, 4)
-    with pytest.raises(ValueError, match="scale must be positive"):
-        reduce_labels(np.ones((5, 7), np.uint8), 0.0)

@@ -54,29 +54,19 @@ def test_wedges_are_no_stones_but_joints_run_around_them():
 
 @repeatable()
 @given(walls(max_px=40), st.integers(0, 9), st.integers(0, 9))
-def test_empty_space_around_the_wall_changes_nothing(labels, rows, cols):
+def test_empty_space_around_the_wall_and_numbers_of_stones_change_nothing(labels, rows, cols):
     padded = np.pad(labels, ((rows, 9 - rows), (cols, 9 - cols)))
     assert measure_labels(padded) == measure_labels(labels)
-
-
-@repeatable()
-@given(walls(max_px=40))
-def test_numbers_of_stones_change_nothing(labels):
     ids, numbers = np.unique(labels, return_inverse=True)
     shift = 0 if ids[0] == 0 else 1
     renumbered = (numbers.reshape(labels.shape) + shift).astype(np.uint8)
     assert measure_labels(renumbered) == measure_labels(labels)
 
 
-@pytest.mark.parametrize(
-    "size", [(0.0, 80.0), (280.0, -1.0), (np.nan, 80.0), (280.0, np.inf), (1e9, 80.0)]
-)
-def test_a_wall_without_room(size):
-    with pytest.raises(UsageError, match="E121"):
-        measure_labels(bricks(2, 2, 5, 8), wall_px=size)
-
-
-def test_no_stones_and_too_few_for_paths():
+def test_a_wall_without_room_without_stones_and_with_too_few_for_paths():
+    for size in ((0.0, 80.0), (280.0, -1.0), (np.nan, 80.0), (280.0, np.inf), (1e9, 80.0)):
+        with pytest.raises(UsageError, match="E121"):
+            measure_labels(bricks(2, 2, 5, 8), wall_px=size)
     metrics = measure_labels(np.ones((6, 6), np.uint32))
     assert (metrics.F_AV, metrics.F_AH) == (None, None)
     with pytest.raises(LabelImageError, match="E104"):

@@ -64,7 +64,6 @@ def test_where_a_stone_is_in_the_way_there_is_no_path(stone):
 @given(walls(max_px=36))
 def test_arrangements_are_their_slow_twins(labels):
     joint = joint_mask(labels)
-    vertical = paths.vertical_arrangement(joint)
-    assert vertical == pytest.approx(naive.vertical_arrangement(joint), abs=1e-9)
-    horizontal = paths.horizontal_arrangement(joint)
-    assert horizontal == pytest.approx(naive.vertical_arrangement(joint.T), abs=1e-9)
+    found = paths.vertical_arrangement(joint), paths.horizontal_arrangement(joint)
+    for each, way in zip(found, (joint, joint.T), strict=True):
+        assert each == pytest.approx(naive.vertical_arrangement(way), abs=1e-9)

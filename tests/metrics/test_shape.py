@@ -33,15 +33,10 @@ def test_an_image_without_background_has_its_sizes_and_wedges_alone_are_no_wall(
 
 
 @repeatable()
-@given(walls(), st.floats(1, 50))
-def test_level_is_its_slow_twin(labels, height):
-    expected = naive.level_deviation(labels, height)
-    assert level_deviation(labels, height) == pytest.approx(expected, abs=1e-12)
-
-
-@repeatable()
 @given(walls(), st.floats(1, 50), st.floats(1, 50))
-def test_flush_is_its_slow_twin(labels, wall_width, stone_width):
+def test_level_and_flush_are_their_slow_twins(labels, wall_width, stone_px):
+    expected = naive.level_deviation(labels, stone_px)
+    assert level_deviation(labels, stone_px) == pytest.approx(expected, abs=1e-12)
     frame = frame_wall(labels, wall_width)
-    expected = naive.flush_deviation(frame.labels, frame.left_px, frame.right_px, stone_width)
-    assert flush_deviation(frame, stone_width) == pytest.approx(expected, abs=1e-12)
+    expected = naive.flush_deviation(frame.labels, frame.left_px, frame.right_px, stone_px)
+    assert flush_deviation(frame, stone_px) == pytest.approx(expected, abs=1e-12)

@@ -75,17 +75,14 @@ def by_cells(made, height, width):
     return cells
 
 
-def built(made, height, width):
-    shares = Shares.empty(height, width)
-    for block in made:
-        shares = shares.added(*block)
-    return shares
-
-
 @repeatable(80)
 @given(made=blocks(), height=st.integers(1, 7), width=st.integers(1, 9))
-def test_each_cell_has_the_sum_the_largest_and_its_owner(made, height, width):
-    shares = built(made, height, width)
+def test_each_cell_has_the_sum_the_largest_and_its_owner_and_fresh_ones_become_part(
+    made, height, width
+):
+    shares = Shares.empty(height, width)
+    for block in made:
+        before, shares = shares, shares.added(*block)
     cells = by_cells(made, height, width)
     assert shares.total.shape == shares.largest.shape == shares.owners.shape == (height, width)
     for x in range(width):
@@ -97,22 +94,11 @@ def test_each_cell_has_the_sum_the_largest_and_its_owner(made, height, width):
             assert shares.largest[at] == largest
             assert shares.owners[at] == owner
             assert shares.labels[at] == (owner if sum(each) >= 0.5 - 1e-12 else 0)
-
-
-@repeatable(80)
-@given(made=blocks(), height=st.integers(1, 7), width=st.integers(1, 9))
-def test_fresh_cells_are_those_that_become_part_of_the_image(made, height, width):
-    shares = built(made[:-1], height, width)
-    block_id, new, left, bottom = made[-1]
-    appear = (shares.labels == 0) & (shares.added(block_id, new, left, bottom).labels > 0)
-    fresh = shares.fresh(new, left, bottom)
-    if fresh is None:
-        assert not appear.any()
-        return
-    mask, row, col = fresh
-    image = np.zeros((height, width), bool)
-    image[row : row + mask.shape[0], col : col + mask.shape[1]] = mask
-    np.testing.assert_array_equal(image, appear)
+    image, fresh = np.zeros((height, width), bool), before.fresh(*made[-1][1:])
+    if fresh is not None:
+        mask, row, col = fresh
+        image[row : row + mask.shape[0], col : col + mask.shape[1]] = mask
+    np.testing.assert_array_equal(image, (before.labels == 0) & (shares.labels > 0))
 
 
 def test_of_equal_shares_the_first_keeps_the_cell_and_half_is_enough_whatever_the_rounding():

@@ -24,29 +24,22 @@ def test_what_is_measured_is_that_of_the_pixel_squares(mask):
     assert stone.eccentricity == pytest.approx(naive.second_moment_eccentricity(mask), abs=0.02)
 
 
-def test_eccentricity_of_a_rectangle_in_closed_form():
-    assert Stone(1, np.ones((30, 60), bool)).eccentricity == pytest.approx((1 - 0.25) ** 0.5)
-    assert Stone(1, np.ones((9, 9), bool)).eccentricity == 0.0
-
-
-def test_a_stone_keeps_its_own_pixels():
-    pixels = np.ones((2, 2), bool)
+def test_a_stone_has_a_positive_id_and_pixels_of_its_own():
+    pixels = np.ones((9, 9), bool)
     stone = Stone(70_000, pixels)
     pixels[0, 0] = False
-    assert stone.area_px == 4
+    assert (stone.area_px, stone.eccentricity) == (81, 0.0)
     with pytest.raises(ValueError, match="read-only"):
         stone.mask[0, 0] = False
-
-
-def test_a_stone_has_pixels_and_a_positive_id():
     with pytest.raises(ValueError, match="id must be positive"):
         Stone(0, np.ones((1, 1), bool))
     for shape in ((2, 2), (0, 3), (4,)):
         with pytest.raises(ValueError, match="at least one pixel"):
             Stone(1, np.zeros(shape, bool))
+    assert Stone(1, np.ones((30, 60), bool)).eccentricity == pytest.approx((1 - 0.25) ** 0.5)
 
 
-def test_a_set_is_ordered_and_knows_its_stones():
+def test_a_set_is_ordered_and_knows_its_stones_and_their_names():
     pixel = np.ones((1, 1), bool)
     stones = StoneSet((Stone(300, pixel), Stone(7, pixel)), Source("a.png"))
     assert [stone.id for stone in stones] == [7, 300]
@@ -56,9 +49,7 @@ def test_a_set_is_ordered_and_knows_its_stones():
         stones.by_id(8)
     with pytest.raises(ValueError, match="same id"):
         StoneSet((Stone(7, pixel), Stone(7, pixel)))
-
-
-def test_names_that_are_no_utf8_can_be_written():
+    # Names that are no UTF-8 can be written.
     name = b"st\xf6nes.png".decode("utf-8", "surrogateescape")
     source = Source(name, files=(name, "b.png"))
     assert (source.path, source.files) == ("st?nes.png", ("st?nes.png", "b.png"))

@@ -20,12 +20,7 @@ def test_a_turned_stone_has_its_own_sides(size, angle_deg):
     assert sides_px(block(*size, angle_deg)) == pytest.approx(size, abs=1.2)
 
 
-def test_stones_of_a_px_or_a_row():
-    assert sides_px(np.ones((1, 1), bool)) == (1.0, 1.0)
-    assert sides_px(np.ones((7, 1), bool)) == sides_px(np.ones((1, 7), bool)) == (7.0, 1.0)
-
-
-def test_room_around_a_stone_and_numbers_that_are_missing_change_nothing():
+def test_room_around_stones_changes_nothing_and_the_median_is_that_of_either_side():
     labels = np.zeros((50, 60), np.uint16)
     labels[10:14, 20:29] = 7
     labels[30:40, 40:42] = 2
@@ -33,7 +28,6 @@ def test_room_around_a_stone_and_numbers_that_are_missing_change_nothing():
     assert (two.id, two.at_px, two.area_px) == (2, (41.0, 35.0), 20)
     assert (seven.id, seven.at_px, seven.area_px) == (7, (24.5, 12.0), 36)
     assert (seven.length_px, seven.width_px) == sides_px(labels == 7) == (9.0, 4.0)
-
-
-def test_the_median_of_either_side():
+    assert sides_px(np.ones((1, 1), bool)) == (1.0, 1.0)
+    assert sides_px(np.ones((7, 1), bool)) == sides_px(np.ones((1, 7), bool)) == (7.0, 1.0)
     assert median_sides([(6.0, 2.0), (9.0, 1.0)]) == (7.5, 1.5)

@@ -31,6 +31,10 @@ def test_adding_paints_stone_and_wedges_and_keeps_the_old_wall():
     assert wall.wedges == (wedge,)
     assert wedge.area_px == 2
     assert wall.filling == 6 / 24  # wedges do not count
+    # Source pixels count, at the working scale.
+    posed = PoseBook(0.5).pose(Stone(1, np.ones((5, 5), bool)), 0.0)
+    wall = Wall.empty(Site(5, 5, scale=0.5)).add(Placement(posed, 5 - posed.height_px, 0))
+    assert wall.filling == pytest.approx(25 / 4 / 25)
 
 
 @pytest.mark.parametrize("place", [(-1, 0), (3, 0), (0, -1), (0, 4), (1, 2)])
@@ -40,12 +44,10 @@ def test_what_leaves_the_site_or_overlaps_is_refused(place):
         wall.add(Placement(POSED, *place))
     with pytest.raises(ValueError, match="read-only"):
         wall.labels[0, 0] = 1
-
-
-def test_filling_counts_source_pixels_at_the_working_scale():
-    posed = PoseBook(0.5).pose(Stone(1, np.ones((5, 5), bool)), 0.0)
-    wall = Wall.empty(Site(5, 5, scale=0.5)).add(Placement(posed, 5 - posed.height_px, 0))
-    assert wall.filling == pytest.approx(25 / 4 / 25)
+    assert wall.outlines is None
+    for asked in (wall, wall.placements[0]):
+        with pytest.raises(ValueError, match="pixels"):
+            _ = asked.exact
 
 
 @repeatable()
@@ -78,8 +80,9 @@ def test_with_outlines_a_pixel_is_whose_share_is_largest_where_half_is_covered()
     first = empty.add(one)
     # Of the third column .65 is covered.
     assert first.labels.tolist() == [[0] * 6, [3, 3, 3, 0, 0, 0], [3, 3, 3, 0, 0, 0]]
-    wedge = Wedge(90, 9, np.zeros((0, 0), bool), 3, 0, np.array([[8.2, 0], [9.2, 0], [9.2, 2]]))
-    second = first.add(_settled(9, 5.3, 0.0, 8.2, 2.0), (wedge,))
+    pixels, corners = np.zeros((0, 0), bool), np.array([[8.2, 0], [9.2, 0], [9.2, 2]])
+    wedges = Wedge(90, 9, pixels, 3, 0, corners), Wedge(91, 9, pixels, 3, 0)
+    second = first.add(_settled(9, 5.3, 0.0, 8.2, 2.0), wedges)
     assert second.labels.tolist() == [
         [0] * 6,
         [3, 3, 3, 0, 0, 0],
@@ -90,32 +93,7 @@ def test_with_outlines_a_pixel_is_whose_share_is_largest_where_half_is_covered()
     assert third.labels[1].tolist() == [3, 3, 3, 5, 0, 0]
     assert not empty.occupied.any()
     assert third.exact.ids == (3, 9, 90, 5)
-    assert third.wedges == (wedge,)
+    assert third.wedges == wedges
+    (block, kept), (other, of_wedge) = outlined(one, wedges)
+    assert (block, other, of_wedge is corners, kept is one.exact.corners) == (3, 90, True, True)
     assert third.height_px == 2
-
-
-def test_a_stone_takes_a_pixel_of_which_it_has_more_than_those_before():
-    wall = Wall.empty(Site(3, 1, 0.5), exact=True).add(_settled(3, 0.0, 0.0, 2.9, 2.0))
-    assert wall.labels.tolist() == [[3, 0, 0]]
-    # .45 of the second column is the first stone's, .55 the second's.
-    assert wall.add(_settled(9, 2.9, 0.0, 6.0, 2.0)).labels.tolist() == [[3, 9, 9]]
-    assert wall.add(_settled(9, 3.3, 0.0, 6.0, 2.0)).labels.tolist() == [[3, 3, 9]]
-
-
-def test_outlined_are_the_stone_and_its_wedges():
-    stone = _settled(3, 0.0, 0.0, 5.3, 4.0)
-    corners = np.array([[6.0, 0.0], [7.0, 0.0], [7.0, 1.0]])
-    wedges = tuple(
-        Wedge(i, 3, np.ones((1, 1), bool), 0, 0, c) for i, c in ((8, corners), (9, None))
-    )
-    (block, kept), (other, of_wedge) = outlined(stone, wedges)
-    assert (block, other, of_wedge is corners) == (3, 8, True)
-    assert kept is stone.exact.corners
-
-
-def test_a_wall_of_pixels_has_no_outlines():
-    pixels = Wall.empty(Site(6, 4)).add(Placement(POSED, 2, 0))
-    assert pixels.outlines is None
-    for asked in (pixels, pixels.placements[0]):
-        with pytest.raises(ValueError, match="pixels"):
-            _ = asked.exact

@@ -9,16 +9,19 @@ def load(block, laid, beds):
         if all(bearing.below != block for bearing in on):
             continue
         weight, x, _ = load(one, laid, beds)
-        left = max((b for b in on if b.x <= x), key=lambda b: b.x, default=None)
-        right = min((b for b in on if b.x > x), key=lambda b: b.x, default=None)
-        if left and right:
-            share = (right.x - x) / (right.x - left.x)
-            shares = [(left, share), (right, 1.0 - share)]
-        else:
-            shares = [(left or right, 1.0)]
+        left, right = beside(on, x)
+        share = (right.x - x) / (right.x - left.x) if left.x <= x < right.x else 1.0
+        shares = [(left, share), (right, 1.0 - share)]
         parts += [(weight * part, b.x, b.y) for b, part in shares if b.below == block]
     whole = sum(weight for weight, _, _ in parts)
     return whole, sum(w * x for w, x, _ in parts) / whole, sum(w * y for w, _, y in parts) / whole
+
+
+def beside(points, x):
+    """Return the points next to a load on both sides, beyond an end the same one twice."""
+    left = max((b for b in points if b.x <= x), key=lambda b: b.x, default=points[0])
+    right = min((b for b in points if b.x > x), key=lambda b: b.x, default=points[-1])
+    return left, right
 
 
 def stays(block, laid, beds, mu, near):
@@ -37,8 +40,7 @@ def stays(block, laid, beds, mu, near):
             continue
         other = next(i for i, bed in beds.items() if bed.points is points)
         weight, at, _ = load(other, laid, beds)
-        left = max((b for b in points if b.x <= at), key=lambda b: b.x, default=points[0])
-        right = min((b for b in points if b.x > at), key=lambda b: b.x, default=points[-1])
+        left, right = beside(points, at)
         for bears, held in ((left, right), (right, left)):
             if bears.below != block:
                 continue

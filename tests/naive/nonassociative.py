@@ -28,7 +28,6 @@ class Limits:
     """Load multipliers of all solutions with the same states of the contact points."""
 
     least: float
-    greatest: float
 
 
 def all_limits(model, direction):
@@ -54,9 +53,7 @@ def _branch(shape, motions, forces, states):
         return
     k = len(states)
     if k == count:
-        greatest = _least(forces, 0, -1.0)
-        assert greatest is not None
-        yield Limits(least, -greatest)
+        yield Limits(least)
         return
     normal, up, down = 1 + 2 * k, size + 2 * k, size + 2 * k + 1
     for state in STATES:

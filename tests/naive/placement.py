@@ -9,6 +9,7 @@ from scipy import ndimage, signal
 from drystone.kernels.raster import Mask
 from tests.naive import indices
 from tests.naive.overlap import lowered, overlaps
+from tests.naive.rays import filling_on_images
 
 OverlapAreas = Callable[[Mask, Mask], NDArray[np.int64]]
 
@@ -96,14 +97,6 @@ def resting_by_areas(occupied, mask, areas):
     raised = np.vstack([occupied[1:], np.ones((1, occupied.shape[1]), bool)])
     free, rests = areas(occupied, mask) == 0, areas(raised, mask) > 0
     return [(int(row), int(col)) for row, col in np.argwhere(free & rests)]
-
-
-def filling_on_images(occupied, stone):
-    """Eq. 4 with the rays of a painted stone painted as whole images."""
-    left = np.logical_or.accumulate(stone[:, ::-1], axis=1)[:, ::-1]
-    swept = (left | np.logical_or.accumulate(stone, axis=0)) & ~stone
-    count = int(np.count_nonzero(swept))
-    return float(np.count_nonzero(swept & occupied) / count) if count else 1.0
 
 
 def eq12(occupied, mask, anchor_x, at, beta):

@@ -14,7 +14,7 @@ from drystone.poses import PoseBook
 from drystone.selection.algorithm2 import Action
 from drystone.selection.sampling import sample_stones
 from drystone.stabilise.memory import StabiliseMemory
-from tests.naive import indices, placement, selection, statics
+from tests.naive import indices, placement, rays, selection, statics
 
 
 def unfillable(lengths, limit):
@@ -127,7 +127,7 @@ class SlowPlanner:
         extent = indices.extent_of(stone)
         values = Indices(
             SF=indices.shape_factor(at.posed.stone.mask, at.posed.angle_deg),
-            LFR=placement.filling_on_images(occupied, stone),
+            LFR=rays.filling_on_images(occupied, stone),
             GDS=indices.dice_score(occupied, stone),
             NHR=indices.neighbour_height_ratio(self.order, stone, other_heights),
             IWR=indices.interlocking(self.order, stone, self.narrowest),

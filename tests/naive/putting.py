@@ -3,10 +3,10 @@
 import math
 
 import numpy as np
+import shapely
 
 from drystone.kernels.polygons import no_polygons
 from drystone.kernels.settling import Status, settle
-from tests.naive.asides import asides
 
 ALONG = np.array((1.0, 0.0))
 
@@ -57,3 +57,32 @@ def squeezed_in(corners, others, most, gap):
                     pushed[i] = pushed.get(i, 0.0) + sign * way
                     todo.append(others[i])
     return shift, others, pushed
+
+
+def asides(corners, others, gap, sign):
+    """Return how far others must go to a side, by their number."""
+    one, found = shapely.Polygon(corners), {}
+    for i, other in enumerate(map(shapely.Polygon, others)):
+        (x0, y0, x1, y1), (u0, v0, u1, v1) = one.bounds, other.bounds
+        low, high = max(y0, v0), min(y1, v1)
+        beside = high - low >= 0.3 * min(y1 - y0, v1 - v0)
+        if beside and sign * (u0 + u1 - x0 - x1) > 0 and one.intersects(other):
+            across = depth(one, other, low, high, sign, 0)
+            above = 1 if v0 + v1 >= y0 + y1 else -1
+            if across < depth(one, other, max(x0, u0), min(x1, u1), above, 1):
+                found[i] = across + gap
+    return found
+
+
+def depth(one, other, start, end, sign, axis):
+    """Return how far along x (axis 0) or y another polygon must go to clear one."""
+    lines = np.linspace(start, end, 33)
+    if axis == 0:
+        boxes = shapely.box(-1e4, lines[:-1], 1e4, lines[1:])
+    else:
+        boxes = shapely.box(lines[:-1], -1e4, lines[1:], 1e4)
+    near, far = (
+        shapely.bounds(shapely.intersection(boxes, shape)) for shape in (one, other)[:: int(sign)]
+    )
+    # Nothing has no bounds.
+    return float(np.nanmax(near[:, 2 + axis] - far[:, axis], initial=0.0))

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import shapely
+from scipy import ndimage
 from shapely import affinity
 
 from drystone.kernels.raster import rotation
@@ -92,13 +93,9 @@ def rasterised_to_area(mask, centre, angle_deg, scale, phase, area):
 
 def pieces(pixels):
     """Count the pieces of some pixels, joined at edges or corners."""
-    left, count = set(pixels), 0
-    while left:
-        count += 1
-        open_ends = [left.pop()]
-        while open_ends:
-            x, y = open_ends.pop()
-            beside = {(x + i, y + j) for i in (-1, 0, 1) for j in (-1, 0, 1)} & left
-            left -= beside
-            open_ends += beside
-    return count
+    if not pixels:
+        return 0
+    places = np.array(sorted(pixels))
+    image = np.zeros(np.ptp(places, axis=0) + 1, bool)
+    image[tuple((places - places.min(axis=0)).T)] = True
+    return ndimage.label(image, np.ones((3, 3)))[1]

@@ -1,16 +1,17 @@
-"""Slow, obvious twin of the local filling ratio: rays are shot pixel by pixel (Eq. 4, Fig. 7)."""
+"""Slow, obvious twin of the local filling ratio: rays are painted on images (Eq. 4, Fig. 7)."""
+
+import numpy as np
+
+from tests.naive.indices import painted
 
 
 def local_filling_ratio(occupied, mask, row, col):
-    height = occupied.shape[0]
-    stone = {
-        (row + i, col + j) for i in range(mask.shape[0]) for j in range(mask.shape[1]) if mask[i, j]
-    }
-    swept = set()
-    for r, c in stone:
-        swept |= {(r, x) for x in range(c)}
-        swept |= {(y, c) for y in range(r + 1, height)}
-    swept -= stone
-    if not swept:
-        return 1.0
-    return sum(bool(occupied[at]) for at in swept) / len(swept)
+    return filling_on_images(occupied, painted(occupied.shape, mask, row, col))
+
+
+def filling_on_images(occupied, stone):
+    """Eq. 4 of a painted stone."""
+    left = np.logical_or.accumulate(stone[:, ::-1], axis=1)[:, ::-1]
+    swept = (left | np.logical_or.accumulate(stone, axis=0)) & ~stone
+    count = int(np.count_nonzero(swept))
+    return float(np.count_nonzero(swept & occupied) / count) if count else 1.0

@@ -3,10 +3,8 @@
 import numpy as np
 from scipy.optimize import linprog
 
+from tests.naive.nonassociative import STATES
 from tests.naive.statics import contact_matrices
-
-STATES = ("open", "stick", "slide+", "slide-")
-"""Of a contact point; "slide+" along its tangent."""
 
 UNBOUNDED = 3
 """Status of linprog."""

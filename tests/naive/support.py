@@ -3,6 +3,7 @@
 import math
 
 import numpy as np
+from scipy import ndimage
 
 from tests.naive.overlap import overlaps
 
@@ -80,14 +81,9 @@ def _run(gaps, start, highest):
 
 def _connected(pixels):
     """The pixels, if edges join them all."""
-    reached = open_ends = {min(pixels)}
-    while open_ends:
-        beside = {
-            (r + i, c + j) for r, c in open_ends for i, j in ((0, 1), (1, 0), (0, -1), (-1, 0))
-        }
-        open_ends = (beside & pixels) - reached
-        reached = reached | open_ends
-    return pixels if reached == pixels else None
+    image = np.zeros(np.max(list(pixels), axis=0) + 1, bool)
+    image[tuple(np.transpose(list(pixels)))] = True
+    return pixels if ndimage.label(image)[1] == 1 else None
 
 
 def rotated(occupied, trial, book, settings):

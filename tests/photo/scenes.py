@@ -2,6 +2,7 @@
 
 import cv2
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from drystone.photo.view import apply
 from drystone_lab.photographs.layout import PhotoLevel
@@ -27,16 +28,10 @@ BITS = {
 
 def camera(focal_px, size_px, *, tilt_deg=0.0, turn_deg=0.0, distance_m=1.0):
     """Ground (x to the right, y down, metres; 0, 0 in the middle of the photo) to photo px."""
-    tilt, turn = np.deg2rad([tilt_deg, turn_deg])
-    about_x = np.array(
-        [[1, 0, 0], [0, np.cos(tilt), -np.sin(tilt)], [0, np.sin(tilt), np.cos(tilt)]]
-    )
-    about_z = np.array(
-        [[np.cos(turn), -np.sin(turn), 0], [np.sin(turn), np.cos(turn), 0], [0, 0, 1]]
-    )
-    turned = about_x @ about_z
+    turned = Rotation.from_euler("XZ", [tilt_deg, turn_deg], degrees=True)
     inside = np.array([[focal_px, 0, size_px[0] / 2], [0, focal_px, size_px[1] / 2], [0, 0, 1]])
-    return inside @ np.column_stack([turned[:, 0], turned[:, 1], [0, 0, distance_m]])
+    across, down, _ = turned.as_matrix().T
+    return inside @ np.column_stack([across, down, [0, 0, distance_m]])
 
 
 def outline(angle_deg, x, y, side):
@@ -55,34 +50,23 @@ def photograph(
     """
     family, across = BITS[dictionary]
     family = cv2.aruco.getPredefinedDictionary(family)
-    width, height = size_px
-    shown = np.full((height, width), light(105.0))
-    to_ground = np.linalg.inv(to_photo)
+    (width, height), module = size_px, 20  # px of the paper
+    shown = np.full((height * finer, width * finer), 105.0, np.float32)
+    # Of cv2 the centres of pixels have whole coordinates.
+    finely = np.array([[finer, 0, -0.5], [0, finer, -0.5], [0, 0, 1]])
     for marker_id, angle, x, y, side in placed:
-        bits = cv2.aruco.generateImageMarker(family, marker_id, across) > 127
-        module = side / across
-        edge = border * module
-        paper = outline(angle, 0, 0, side + 2 * edge)
-        paper += np.array([x, y]) + outline(angle, 0, 0, -edge)[2]
-        seen = apply(to_photo, paper)
-        low = np.clip(np.floor(seen.min(axis=0)).astype(int), 0, [width, height])
-        high = np.clip(np.ceil(seen.max(axis=0)).astype(int), 0, [width, height])
-        sub = (np.arange(finer) + 0.5) / finer
-        columns = (np.arange(low[0], high[0])[:, None] + sub).ravel()
-        rows = (np.arange(low[1], high[1])[:, None] + sub).ravel()
-        grid = np.stack(np.meshgrid(columns, rows), axis=-1).reshape(-1, 2)
-        cos, sin = np.cos(np.deg2rad(angle)), np.sin(np.deg2rad(angle))
-        on_paper = (apply(to_ground, grid) - (x, y)) @ np.array([[cos, -sin], [sin, cos]])
-        on_paper /= module
-        value = np.full(len(grid), 105.0)
-        value[((on_paper > -border) & (on_paper < across + border)).all(axis=1)] = 225.0
-        inside = ((on_paper > 0) & (on_paper < across)).all(axis=1)
-        column, row = np.floor(on_paper[inside]).astype(int).T
-        value[inside] = np.where(bits[row, column], 225.0, 35.0)
-        value = light(value)
-        blocks = value.reshape(high[1] - low[1], finer, high[0] - low[0], finer).mean(axis=(1, 3))
-        part = shown[low[1] : high[1], low[0] : high[0]]
-        part[blocks != light(105.0)] = blocks[blocks != light(105.0)]
+        bits = cv2.aruco.generateImageMarker(family, marker_id, across * module)
+        edge = round(border * module)
+        paper = np.pad(np.where(bits > 127, 225.0, 35.0), edge, constant_values=225.0)
+        origin, right, _, down = outline(angle, x, y, side / (across * module))
+        to_ground = np.eye(3)
+        to_ground[:2] = np.column_stack([right - origin, down - origin, origin])
+        centres = np.array([[1, 0, 0.5 - edge], [0, 1, 0.5 - edge], [0, 0, 1]])
+        cv2.warpPerspective(
+            paper.astype(np.float32), finely @ to_photo @ to_ground @ centres, shown.shape[::-1],
+            shown, cv2.INTER_NEAREST, cv2.BORDER_TRANSPARENT,
+        )  # fmt: skip
+    shown = light(shown).reshape(height, finer, width, finer).mean(axis=(1, 3))
     shown = cv2.GaussianBlur(shown, (0, 0), blur_px)
     shown = 255.0 * (1.055 * (shown / 255.0) ** (1 / 2.4) - 0.055)
     shown += np.random.default_rng(5).normal(0.0, noise, shown.shape)

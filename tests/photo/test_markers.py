@@ -1,3 +1,5 @@
+"""Markers in photographs, and the sheets on which they are printed."""
+
 import sys
 
 import cv2
@@ -6,7 +8,13 @@ import pytest
 
 from drystone.errors import InputError, UsageError
 from drystone.photo import markers
-from drystone.photo.layout import parse_layout
+from drystone.photo.layout import (
+    PAGES_MM,
+    margin_mm,
+    parse_layout,
+    sheet_positions_m,
+    single_position_m,
+)
 from drystone.photo.markers import (
     DICTIONARIES,
     FAMILIES,
@@ -59,41 +67,33 @@ def test_corners_are_found_to_a_tenth_of_a_px(dictionary, tilt_deg):
         assert np.sqrt((off**2).mean()) < 0.1
 
 
-def test_blur_makes_no_marker_smaller():
-    """It rounds corners off: what looks for them alone reads .4 % too little."""
-    shown = photograph(to_photo(), SIZE, PLACED, blur_px=1.2)
-    for one in find_markers(shown):
+def test_neither_blur_nor_shadow_moves_corners_and_without_edges_they_are_taken_alone(monkeypatch):
+    """Blur rounds corners off: what looks for them alone reads .4 % too little."""
+    for one in find_markers(photograph(to_photo(), SIZE, PLACED, blur_px=1.2)):
         assert one.side_px == pytest.approx(600 * SIDE / 0.4, rel=0.001)
-
-
-def test_a_shadow_over_one_half_moves_nothing():
-    shown = photograph(to_photo(), SIZE, PLACED).astype(float)
-    shown *= np.linspace(1.0, 0.5, SIZE[0])[None, :, None]
-    found = find_markers(shown.astype(np.uint8))
+    shown = photograph(to_photo(), SIZE, PLACED)
+    half_dark = (shown * np.linspace(1.0, 0.5, SIZE[0])[None, :, None]).astype(np.uint8)
+    found = find_markers(half_dark)
     assert [one.id for one in found] == [3, 11]
     assert all(np.abs(off).max() < 0.3 for off in offsets(found))
-
-
-def test_where_edges_cannot_be_measured_the_corners_are_taken(monkeypatch):
     monkeypatch.setattr(markers, "corners_by_edges", lambda *_: None)
-    found = find_markers(photograph(to_photo(), SIZE, PLACED))
+    found = find_markers(shown)
     assert [one.id for one in found] == [3, 11]
     for off in offsets(found):
         assert np.abs(off).max() < 0.7
         assert off.mean(axis=0) == pytest.approx([0, 0], abs=0.1)
 
 
-def test_grey_pictures_are_read_too_and_an_id_may_be_found_twice():
+def test_grey_pictures_are_read_too_and_an_id_may_be_found_twice_or_never(monkeypatch):
     shown = photograph(to_photo(), SIZE, [PLACED[0], (3, *PLACED[1][1:])])
     for picture in (shown, shown[..., 0]):
         assert [one.id for one in find_markers(picture)] == [3, 3]
-
-
-def test_nothing_is_found_where_there_is_nothing_or_a_mirrored_marker():
     noise = np.random.default_rng(1).integers(0, 256, (300, 400, 3), dtype=np.uint8)
-    mirrored = np.ascontiguousarray(photograph(to_photo(), SIZE, PLACED)[:, ::-1])
-    for picture in (noise, np.zeros((50, 50), np.uint8), mirrored):
+    for picture in (noise, np.zeros((50, 50), np.uint8), np.ascontiguousarray(shown[:, ::-1])):
         assert find_markers(picture) == ()
+    monkeypatch.setitem(sys.modules, "cv2", None)
+    with pytest.raises(UsageError, match=r"E305.*drystone\[photo\]"):
+        find_markers(shown)
 
 
 def test_patterns_are_those_of_opencv():
@@ -102,15 +102,49 @@ def test_patterns_are_those_of_opencv():
         known = cv2.aruco.getPredefinedDictionary(family)
         picture = cv2.aruco.generateImageMarker(known, 5, across * 10)
         assert np.array_equal(marker_modules(name, 5), picture[5::10, 5::10] < 128)
+    for name, marker_id in (("qr", 0), ("aruco", 50), ("aruco", -1)):
+        with pytest.raises(UsageError, match="E174"):
+            marker_modules(name, marker_id)
 
 
-@pytest.mark.parametrize(("name", "marker_id"), [("qr", 0), ("aruco", 50), ("aruco", -1)])
-def test_markers_that_do_not_exist(name, marker_id):
-    with pytest.raises(UsageError, match="E174"):
-        marker_modules(name, marker_id)
+def test_a_sheet_has_its_markers_in_the_corners_of_the_page():
+    places = sheet_positions_m("A4", 0.05)
+    expected = [[0.015, 0.015], [0.145, 0.015], [0.145, 0.232], [0.015, 0.232]]
+    assert places == pytest.approx(np.array(expected))
+    layout = parse_layout("a4:5cm")
+    assert (layout.page, layout.ids) == ("A4", (0, 1, 2, 3))
+    assert layout.corners_m(2)[2] == pytest.approx([0.195, 0.282])
+    assert [layout.group(one) for one in (0, 3, 4)] == [0, 0, 1]
+    assert parse_layout("A4:").size_m == 0.05
+    with pytest.raises(UsageError, match="fit on A4") as caught:
+        sheet_positions_m("A4", 0.09)
+    largest = int(caught.value.cure.split()[1])
+    sheet_positions_m("A4", largest / 1000)
+    with pytest.raises(UsageError):
+        sheet_positions_m("A4", (largest + 1) / 1000)
 
 
-def test_without_opencv_the_extra_is_named(monkeypatch):
-    monkeypatch.setitem(sys.modules, "cv2", None)
-    with pytest.raises(UsageError, match=r"E305.*drystone\[photo\]"):
-        find_markers(np.zeros((50, 50), dtype=np.uint8))
+def test_single_markers_have_a_size_and_no_place_and_fit_on_a_page():
+    layout = parse_layout("0.12 m", printed=0.9)
+    assert (layout.page, layout.group(7), layout.side_m) == (None, 7, pytest.approx(0.108))
+    assert layout.corners_m(7)[2] == pytest.approx([0.108, 0.108])
+    assert single_position_m("A4", 0.12) == pytest.approx([0.045, 0.03])
+    with pytest.raises(UsageError, match="does not fit"):
+        single_position_m("A4", 0.2)
+    with pytest.raises(UsageError, match="not plausible"):
+        parse_layout("A4", printed=97.0)
+    for text in ("", "50", "0mm", "50 inches", "A5", "A4:5mm", "A4:90mm", "A4:50", "-5mm"):
+        with pytest.raises(UsageError, match="E174"):
+            parse_layout(text)
+
+
+@pytest.mark.parametrize("page", PAGES_MM)
+def test_the_white_border_is_a_square_and_a_half_wide(page):
+    width, height = PAGES_MM[page]
+    for size_mm in (10, 30, 50, 70):
+        places = sheet_positions_m(page, size_mm / 1000) * 1000
+        low, high = places.min(axis=0), places.max(axis=0) + size_mm
+        border = 1.5 * size_mm / 6
+        assert min(*low, width - high[0], height - high[1]) >= max(border, 15.0) - 1e-9
+        assert places[1, 0] - places[0, 0] - size_mm >= border
+        assert margin_mm(size_mm) >= border

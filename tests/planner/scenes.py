@@ -1,19 +1,18 @@
 """Small stone sets and planners."""
 
 import json
-from itertools import islice
+from itertools import combinations, islice
 
 import numpy as np
+import pytest
+import shapely
 
-from drystone import generate
+from drystone import Planner, Site, Stone, StoneSet, generate, method_settings
 from drystone.io.plan_json import plan_from_json, plan_to_json
-from drystone.model.site import Site
-from drystone.model.stone import Source, Stone, StoneSet
+from drystone.model.stone import Source
 from drystone.model.wall import outlined
 from drystone.planner.deadline import Deadline
 from drystone.planner.events import Stopped
-from drystone.planner.planner import Planner
-from drystone.planner.settings import method_settings
 from drystone.search.plan_result import finish as finished
 from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
 from drystone.verify.check import check_plan
@@ -74,6 +73,23 @@ def greedy(changes=None):
     return method_settings("best").updated({"search": {"budget": 1}, **(changes or {})})
 
 
+RASTER = greedy({"geometry": "raster"})
+GEOMETRIES = pytest.mark.parametrize("settings", [greedy(), RASTER], ids=["exact", "raster"])
+RULES = pytest.mark.parametrize("rule", ["score", "algorithm2"])
+
+
+def watched(monkeypatch, owner, name):
+    """Keep the arguments and the results of all calls of a method from now on."""
+    calls, plain = [], getattr(owner, name)
+
+    def spied(*arguments, **named):
+        calls.append((arguments, plain(*arguments, **named)))
+        return calls[-1][1]
+
+    monkeypatch.setattr(owner, name, spied)
+    return calls
+
+
 def ids(planner):
     """The stones in the order of placement."""
     return [action.stone_id for action in planner.build.actions]
@@ -129,6 +145,18 @@ def proven(result, stones):
     return report
 
 
+def kept_apart(wall, clearance_px):
+    """See that stones and wedges of a wall of outlines keep apart; return their shapes."""
+    shapes = [
+        shapely.Polygon(corners)
+        for group in wall.groups
+        for _, corners in outlined(group.placement, group.wedges)
+    ]
+    for one, other in combinations(shapes, 2):
+        assert one.distance(other) >= 0.49 * clearance_px
+    return shapes
+
+
 def gave_up(mu=0.58):
     """What a solver says that gave up on both directions."""
     left, right = (LimitResult(LimitStatus.FAILED, side) for side in ("left", "right"))
@@ -142,17 +170,13 @@ def outlines(planner):
     return [(block_id, corners.tobytes()) for block_id, corners in blocks]
 
 
+def done(planner):
+    """All that a planner did, with its figures."""
+    figures = [(a.indices, a.resistance.value, a.course_height_px) for a in planner.build.actions]
+    labels = planner.build.wall.labels.tobytes()
+    return order(planner), figures, outlines(planner), labels, planner.stopped
+
+
 def same(one, other):
     """Say whether two planners did the same, with the same figures."""
-    figures = [
-        [(a.indices, a.resistance.value, a.course_height_px) for a in planner.build.actions]
-        for planner in (one, other)
-    ]
-    labels = [planner.build.wall.labels for planner in (one, other)]
-    return (
-        order(one) == order(other)
-        and figures[0] == figures[1]
-        and outlines(one) == outlines(other)
-        and labels[0].tobytes() == labels[1].tobytes()
-        and one.stopped == other.stopped
-    )
+    return done(one) == done(other)

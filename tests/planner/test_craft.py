@@ -1,19 +1,20 @@
-"""The craft terms of an action, by hand."""
+"""The craft terms of an action, by hand, and what is known of the stone set as a whole."""
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from drystone import PlannerSettings, Site, Stone
 from drystone.model.landscape import Landscape
 from drystone.model.placement import Placement, Wedge
-from drystone.model.site import Site
-from drystone.model.stone import Stone
 from drystone.model.wall import Group, Wall
 from drystone.planner.craft import PoseCosts, action_craft, place_cost, pose_cost
-from drystone.planner.stock import Rest, Stock
+from drystone.planner.stock import Rest, Stock, sides_of
+from drystone.planner.workshop import Workshop
 from drystone.poses import PoseBook
 from drystone.selection.scored import PIN_BONUS, ScoreSettings, craft_cost
+from tests.planner.scenes import blocks
 from tests.strategies import posed_on_walls, repeatable
 
 STOCK = Stock(
@@ -22,100 +23,77 @@ STOCK = Stock(
 SITE = Site(40, 20)
 
 
-def _block(stone_id, width, height):
-    return PoseBook().pose(Stone(stone_id, np.ones((height, width), bool)), 0.0)
-
-
 def _rest(leaves=0):
     """Stones that always leave so much of a free length."""
     return Rest(np.full(21, leaves), np.full(41, leaves))
 
 
-def _at(posed, left, bottom):
-    return Placement(posed, SITE.height_px - bottom - posed.height_px, left)
+def _placed(stone_id, width, height, left, bottom, side="left"):
+    """A block with its left end and its lower edge somewhere."""
+    posed = PoseBook().pose(Stone(stone_id, np.ones((height, width), bool)), 0.0)
+    return Placement(posed, SITE.height_px - bottom - height, left, side)
 
 
-def _wall(*placements):
+def _craft(blocks, placement, rest=None, wedges=(), side="left"):
+    """The craft of a placement on blocks: width, height, left end and lower edge of each."""
     wall = Wall.empty(SITE)
-    for placement in placements:
-        wall = wall.add(placement)
-    return wall
+    for stone_id, block in enumerate(blocks, 1):
+        wall = wall.add(_placed(stone_id, *block))
+    group = Group(placement, wedges)
+    return action_craft(Landscape.of(wall, side), group, STOCK, rest or _rest())
 
 
-def _craft(wall, placement, rest=None):
-    return action_craft(Landscape.of(wall), Group(placement), STOCK, rest or _rest())
+PILLAR, BED = (10, 5, 0, 0), ((20, 5, 0, 0), (20, 5, 20, 0))
+NOTHING = dict.fromkeys(("void", "gap", "slot", "headroom", "step", "roughness", "upright"), 0.0)
 
 
-def test_a_block_in_the_corner():
-    craft = _craft(_wall(), _at(_block(1, 10, 5), 0, 0))
-    assert craft.height == pytest.approx(2.5 / 5)
-    assert craft.area == pytest.approx(1.0)
-    nothing = (craft.void, craft.gap, craft.slot, craft.headroom, craft.step, craft.roughness)
-    assert nothing == (0, 0, 0, 0, 0, 0)
-    assert craft.upright == 0
-    assert craft.joint == 1.0  # a boundary stone whose top does not slope: IS = 0
+@pytest.mark.parametrize(
+    ("blocks", "block", "rest", "expected"),
+    [
+        # A boundary stone whose top does not slope: IS = 0.
+        ([], PILLAR, 0, {**NOTHING, "height": 2.5 / 5, "area": 1.0, "joint": 1.0}),
+        # On the pillar, 4 of 10 columns over nothing: 4 x 5 px; 6 px free on the left, 4 px high.
+        ([PILLAR], (8, 4, 6, 5), 0, {"height": 7 / 5, "void": 4 * 5 / 50, "gap": 6 * 4 / 50}),
+        ([], (8, 8, 30, 0), 0, {"gap": 1.0}),  # it counts for one stone at most
+        ([PILLAR], (10, 8, 10, 0), 0, {"step": 3 / 5}),
+        ([PILLAR], (10, 5, 10, 0), 0, {"step": 0.0}),
+        ([], (10, 8, 10, 0), 0, {"step": 0.0}),  # there is nothing to compare with
+        ([], PILLAR, 3, {"slot": 3 * 5 / 50, "headroom": 3 * 10 / 50}),
+        (BED, (4, 10, 10, 5), 0, {"upright": 1 - 4 / 10, "roughness": 0.0}),
+    ],
+)
+def test_craft_of_blocks(blocks, block, rest, expected):
+    craft = vars(_craft(blocks, _placed(9, *block), _rest(rest)))
+    assert {name: craft[name] for name in expected} == pytest.approx(expected)
 
 
-def test_height_void_and_gap():
-    pillar = _at(_block(1, 10, 5), 0, 0)
-    # On the pillar, 4 of 10 columns over nothing: 4 x 5 px; 6 px free on the left, 4 px high.
-    craft = _craft(_wall(pillar), _at(_block(2, 8, 4), 6, 5))
-    assert craft.height == pytest.approx((5 + 2) / 5)
-    assert craft.void == pytest.approx(4 * 5 / 50)
-    assert craft.gap == pytest.approx(6 * 4 / 50)
-    # The gap counts for one stone at most.
-    assert _craft(_wall(), _at(_block(2, 8, 8), 30, 0)).gap == 1.0
-
-
-def test_a_wedge_fills_its_part_of_the_void():
-    wall = _wall(_at(_block(1, 10, 5), 0, 0))
-    placement = _at(_block(2, 8, 4), 6, 5)
+def test_what_a_wedge_fills_and_the_rest_cannot_fill():
     wedge = Wedge(10, 2, np.ones((5, 3), bool), 15, 11)
-    craft = action_craft(Landscape.of(wall), Group(placement, (wedge,)), STOCK, _rest())
+    craft = _craft([PILLAR], _placed(2, 8, 4, 6, 5), wedges=(wedge,))
     assert craft.void == pytest.approx((4 * 5 - 15) / 50)
-
-
-def test_step_to_the_neighbour():
-    wall = _wall(_at(_block(1, 10, 5), 0, 0))
-    assert _craft(wall, _at(_block(2, 10, 8), 10, 0)).step == pytest.approx(3 / 5)
-    assert _craft(wall, _at(_block(2, 10, 5), 10, 0)).step == 0.0
-    assert _craft(_wall(), _at(_block(2, 10, 8), 10, 0)).step == 0.0  # nothing to compare with
-
-
-def test_what_the_rest_cannot_fill():
-    craft = _craft(_wall(), _at(_block(1, 10, 5), 0, 0), _rest(3))
-    assert craft.slot == pytest.approx(3 * 5 / 50)
-    assert craft.headroom == pytest.approx(3 * 10 / 50)
     # The free width on the right is 30, the free height 15.
     width, height = np.zeros(41, int), np.zeros(21, int)
     width[30], height[15] = 2, 4
-    craft = _craft(_wall(), _at(_block(1, 10, 5), 0, 0), Rest(height, width))
+    craft = _craft([], _placed(1, *PILLAR), Rest(height, width))
     assert craft.slot == pytest.approx(2 * 5 / 50)
     assert craft.headroom == pytest.approx(4 * 10 / 50)
 
 
-def test_roughness_upright_and_joint():
+def test_roughness_and_joint():
     mask = np.ones((6, 8), bool)
     mask[:2, :4] = False  # a step of 2 px half way: 1 px on average from the median, 1 px down
-    wall = _wall(_at(_block(1, 20, 5), 0, 0), _at(_block(2, 20, 5), 20, 0))
     stepped = PoseBook().pose(Stone(3, mask), 0.0)
-    craft = _craft(wall, _at(stepped, 10, 5))
+    craft = _craft(BED, Placement(stepped, SITE.height_px - 5 - stepped.height_px, 10))
     assert craft.roughness == pytest.approx(1 / 5)
     assert craft.upright == 0
     # Its ends are 10 and 2 px from the joint at 20, of stones 20 px wide: IWR = (.5 + .1) / 2.
     assert craft.joint == pytest.approx(1 - 0.3)
-    upright = _craft(wall, _at(_block(3, 4, 10), 10, 5))
-    assert upright.upright == pytest.approx(1 - 4 / 10)
-    assert upright.roughness == 0
 
 
 def test_from_the_right_everything_is_mirrored():
-    pillar, stone = _block(1, 10, 5), _block(2, 8, 4)
-    left = _craft(_wall(_at(pillar, 0, 0)), _at(stone, 6, 5), _rest(2))
-    mirrored = Placement(stone, SITE.height_px - 9, SITE.width_px - 6 - 8, "right")
-    wall = _wall(_at(pillar, 30, 0))
-    right = action_craft(Landscape.of(wall, "right"), Group(mirrored), STOCK, _rest(2))
-    assert right == left
+    left = _craft([PILLAR], _placed(2, 8, 4, 6, 5), _rest(2))
+    placement = _placed(2, 8, 4, SITE.width_px - 6 - 8, 5, "right")
+    assert _craft([(10, 5, 30, 0)], placement, _rest(2), side="right") == left
 
 
 @repeatable(60)
@@ -135,7 +113,45 @@ def test_place_and_pose_cost_what_the_action_costs_but_for_step_and_joint(scene,
 
 
 def test_costs_of_poses_are_those_of_the_weights_of_now():
-    poses, costs = [_block(1, 20, 5), _block(2, 4, 10)], PoseCosts(STOCK, frozenset({2}))
+    poses = [_placed(1, 20, 5, 0, 0).posed, _placed(2, 4, 10, 0, 0).posed]
+    costs = PoseCosts(STOCK, frozenset({2}))
     for score in (ScoreSettings(), ScoreSettings(area=9.0), ScoreSettings()):
         first, second = (pose_cost(posed, STOCK, score) for posed in poses)
         assert costs.of(poses, score).tolist() == [first, second - PIN_BONUS]
+
+
+def workshop_of(sizes):
+    return Workshop.prepare(blocks(sizes), Site(40, 20), PlannerSettings())
+
+
+def test_stock_and_the_sides_that_are_left():
+    workshop = workshop_of({7: (20, 10), 300: (8, 4), 12: (12, 6)})
+    stock = workshop.stock
+    assert (stock.narrowest_px, stock.largest_id) == (8.0, 300)
+    assert stock.mean_height_px == pytest.approx(20 / 3)
+    assert stock.mean_area_px == pytest.approx((200 + 32 + 72) / 3)
+    assert stock.sides == {(10, 20): 1, (4, 8): 1, (6, 12): 1}
+    # One pose at a time is enough.
+    assert Stock.of(map(workshop.initial, (7, 12, 300))) == stock
+    workshop = workshop_of({1: (20, 10), 2: (8, 4), 3: (10, 20), 4: (8, 4)})
+    poses, sides = {i: workshop.initial(i) for i in (1, 2, 3, 4)}, workshop.sides
+    left = sides - sides_of([poses[1], poses[2]])
+    assert left == {(10, 20): 1, (4, 8): 1} == sides_of([poses[3], poses[4]])
+    assert sides == {(10, 20): 2, (4, 8): 2}
+
+
+@pytest.mark.parametrize(
+    ("sizes", "heights", "widths"),
+    [
+        # Flat on each other; beside each other 4 or 8, 10 or 20, and sums of one of each.
+        ({1: (20, 10), 2: (8, 4)}, [0, 4, 10, 14], [0, 4, 8, 10, 14, 18, 20, 24, 28]),
+        # Also where they are of one height and of different widths.
+        ({1: (20, 6), 2: (14, 6)}, [0, 6, 12], [0, 6, 12, 14, 20, 26, 34]),
+    ],
+)
+def test_rest_lays_stones_flat_on_each_other_and_any_way_beside(sizes, heights, widths):
+    workshop = workshop_of(sizes)
+    rest = Rest.of(workshop.sides, workshop.site)
+    assert (rest.height_px.shape, rest.width_px.shape) == ((21,), (41,))
+    assert np.flatnonzero(rest.height_px == 0).tolist() == heights
+    assert np.flatnonzero(rest.width_px == 0).tolist() == widths

@@ -9,12 +9,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from drystone import method_settings, plan_wall, write_plan
 from drystone.generate import RubbleSettings, rubble_stones
-from drystone.io.plan_json import write_plan
 from drystone.io.wall_image import write_wall_image
 from drystone.kernels.backend import VARIABLE
-from drystone.planner.settings import method_settings
-from drystone.search.plan_wall import plan_wall
 from tests.planner.scenes import WITH_WEDGES, few_stones, greedy, rubble
 
 RUBBLE = {"scale": 1.0, "seed": 7}
@@ -53,35 +51,20 @@ def planned(name, folder, n_jobs=1):
     return (folder / PLAN).read_bytes(), image.read_bytes()
 
 
-def elsewhere(folder, names, changes):
-    """Plan walls in another process, with other variables; which kernels it has."""
-    folder.mkdir()
-    ran = subprocess.run(  # noqa: S603 - our own code
-        [sys.executable, "-c", SCRIPT, str(folder), *names],
-        check=True,
-        stdout=subprocess.PIPE,
-        text=True,
-        cwd=Path(__file__).parents[2],
-        env={**os.environ, "PYTHONPATH": "src", **changes},
-    )
-    return ran.stdout.strip()
-
-
 LOADS = {"LLC", "F_LR", "F_LR_coulomb", "F_LR_no_setback", "alpha_left", "alpha_right"}
 """What the linear programs say: without a compiler HiGHS solves them, to other last bits."""
 
 
-def parted(plan):
+def parted(text):
     """A plan without its load factors, and the load factors."""
-    if isinstance(plan, list):
-        parts = [parted(value) for value in plan]
-        return [part[0] for part in parts], [load for part in parts for load in part[1]]
-    if isinstance(plan, dict):
-        loads = [value for key, value in plan.items() if key in LOADS and value is not None]
-        rest = {key: value for key, value in plan.items() if key not in LOADS or value is None}
-        poses, more = parted(list(rest.values()))
-        return dict(zip(rest, poses, strict=True)), loads + more
-    return plan, []
+    loads = []
+
+    def without(part):
+        told = [key for key in part if key in LOADS and part[key] is not None]
+        loads.extend(part.pop(key) for key in told)
+        return part
+
+    return json.loads(text, object_hook=without), loads
 
 
 @pytest.fixture(scope="module")
@@ -99,12 +82,20 @@ def test_threads_and_processes_do_not_shape_walls(name, alone, tmp_path):
 
 def test_neither_kernels_nor_the_order_of_sets_shape_the_plan(alone, tmp_path):
     """Another process has kernels in Python, and another seed of Python's hashes."""
-    changes = {VARIABLE: "python", "PYTHONHASHSEED": "123"}
-    assert elsewhere(tmp_path / "there", WALLS, changes) == "Python"
+    changes = {"PYTHONPATH": "src", VARIABLE: "python", "PYTHONHASHSEED": "123"}
+    ran = subprocess.run(  # noqa: S603 - our own code
+        [sys.executable, "-c", SCRIPT, str(tmp_path), *WALLS],
+        check=True,
+        stdout=subprocess.PIPE,
+        text=True,
+        cwd=Path(__file__).parents[2],
+        env={**os.environ, **changes},
+    )
+    assert ran.stdout.strip() == "Python"
     for name in WALLS:
-        plan, image = ((tmp_path / "there" / name / file).read_bytes() for file in (PLAN, IMAGE))
+        plan, image = ((tmp_path / name / file).read_bytes() for file in (PLAN, IMAGE))
         assert alone[name][1] == image
-        (poses, loads), (same, near) = (parted(json.loads(one)) for one in (alone[name][0], plan))
+        (poses, loads), (same, near) = parted(alone[name][0]), parted(plan)
         assert poses == same
         assert len(loads) >= 9
         assert loads == pytest.approx(near, abs=1e-12)

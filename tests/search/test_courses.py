@@ -1,22 +1,34 @@
-"""Planning course by course: every stone once, inside the wall, courses that bond."""
+"""Planning course by course: plans, the walls laid by them, and what is changed of walls."""
 
+from collections import Counter
 from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 import pytest
 
+from drystone import Planner, Site, Stone
 from drystone.generate.brick import BrickSettings, brick_stones
 from drystone.generate.rubble import RubbleSettings, rubble_stones
 from drystone.kernels.backend import describe
 from drystone.kernels.courses import evaluate
-from drystone.model.stone import Stone
-from drystone.planner.search_settings import CourseSettings
+from drystone.planner.evaluate import Evaluator
+from drystone.planner.search_settings import CourseSettings, SearchSettings
+from drystone.planner.workshop import Workshop
 from drystone.poses import PoseBook
+from drystone.search import by_courses
+from drystone.search.by_courses import newly_planned, relaid, replanned
+from drystone.search.chain import recreated, without
 from drystone.search.course_task import ground_of, task_of
 from drystone.search.courses import CoursePlan, PlannedStone, placed, plan_courses, resumed
+from drystone.search.goal import FoundWall
+from drystone.search.operators import NEW, OPERATORS, RECREATED, RELAID, REPLANNED, Credits, shares
+from drystone.search.packed import PackedWall, found_again
+from drystone.search.ruin import RUINS, joint, taken_down, with_all_above
+from drystone.search.yard import Yard
 from drystone.settle.rest import placed_outline
-from tests.planner.scenes import blocks
+from drystone.statics.incremental import IncrementalResult
+from tests.planner import scenes
 from tests.polygons import box
 
 TOLERANCE_PX = 0.35
@@ -30,9 +42,8 @@ needs_compiled = pytest.mark.skipif(describe() == "Python", reason="kernels are 
 
 def bricks(count, halves=0):
     """Bricks of 24 x 8 px."""
-    return brick_stones(
-        BrickSettings(count=count, halves=halves, height_px=8), np.random.default_rng(1)
-    )
+    size = BrickSettings(count=count, halves=halves, height_px=8)
+    return brick_stones(size, np.random.default_rng(1))
 
 
 def task(stones, size, cell_px=1.0, settings=QUICK, **options):
@@ -127,9 +138,7 @@ def test_whole_bricks_are_bonded_whether_they_fit_or_not(bricks_wide):
     assert max(stone.top_px for course in plan.courses for stone in course) <= 40.0
     rows = [sorted((one.left_px, one.right_px) for one in course) for course in plan.courses]
     for below, above in pairwise(rows):
-        for left, right in above:
-            middle = (left + right) / 2
-            assert below[0][0] < middle < below[-1][1]
+        assert all(below[0][0] < sum(ends) / 2 < below[-1][1] for ends in above)
     joints = [[0.5 * (a[1] + b[0]) for a, b in pairwise(row)] for row in rows]
     near = [
         min((abs(one - other) for other in below), default=99.0)
@@ -159,10 +168,11 @@ def test_planning_again_without_upper_courses_starts_anew():
     plan = plan_courses(task(RUBBLE.stones, SIZE, 4.0), 1)
     there = {one.stone_id: outline_of(RUBBLE, one) for one in plan.courses[0]}
     left = [stone for stone in RUBBLE if stone.id not in there]
-    laid = [[*there.values()]]
-    start = CoursePlan(plan.courses[:1], 0.0)
-    again = plan_courses(task(left, SIZE, 4.0, laid=laid), 1, begun=start, keep=1)
-    assert len(again.courses) > 1
+    upper, start = (
+        task(left, SIZE, 4.0, laid=[[*there.values()]]),
+        CoursePlan(plan.courses[:1], 0.0),
+    )
+    assert len(plan_courses(upper, 1, begun=start, keep=1).courses) > 1
 
 
 def test_what_is_laid_has_joints_beds_and_ways():
@@ -181,11 +191,11 @@ def test_what_is_laid_has_joints_beds_and_ways():
 
 def test_no_plan_has_more_courses_than_it_may():
     """Half of the stones are slabs: the median stone is high, and few courses are allowed."""
-    slabs = blocks({k: (390, 4) if k <= 40 else (36, 36) for k in range(1, 82)})
+    slabs = scenes.blocks({k: (390, 4) if k <= 40 else (36, 36) for k in range(1, 82)})
     many = task(list(slabs), (400.0, 700.0), 2.0, CourseSettings(evaluations=20))
     assert 0 < len(plan_courses(many, 0).courses) <= many.rules.courses < 81
     # Nor where one of more courses is gone on from.
-    one = task(list(blocks(dict.fromkeys(range(1, 21), (36, 36)))), (400.0, 80.0), 2.0)
+    one = task(list(scenes.blocks(dict.fromkeys(range(1, 21), (36, 36)))), (400.0, 80.0), 2.0)
     angles = dict(zip((s.id for s in one.stones), one.angles_deg, strict=True))
     single = [
         (PlannedStone(i, angles[i][0], "left", 18.0, 18.0, 0.0, 36.0, 36.0),) for i in range(1, 21)
@@ -209,9 +219,7 @@ def test_a_stock_that_is_about_enough_changes_nothing_until_a_part_is_laid():
     tops = np.full_like(one.ground.tops, round(0.3 * one.ground.height))
     later = replace(one, ground=one.ground._replace(tops=tops))
     assert later.choosing(()).rules != later.rules
-
-
-def test_with_plenty_standing_out_is_worse_than_being_left_out():
+    # With plenty, standing out is worse than being left out.
     one = chosen(0.25)
     weights, changed = one.rules.weights, one.choosing(()).rules.weights
     assert one.taken == pytest.approx(0.25 * 24, abs=2)
@@ -232,3 +240,183 @@ def test_pinned_stones_are_left_out_last():
     assert len(free) < 16
     left = sorted({stone.id for stone in RUBBLE} - free)[:3]
     assert set(left) <= ids(left)
+
+
+def rng(seed):
+    return np.random.default_rng(seed)
+
+
+def yard_of(site=scenes.RUBBLE_SITE, **changes):
+    settings = scenes.greedy({"search": {"budget": 2}, **changes})
+    return Yard(Workshop.prepare(scenes.rubble(), site, settings), settings)
+
+
+@pytest.fixture(scope="module")
+def yard():
+    return yard_of()
+
+
+@pytest.fixture(scope="module")
+def first_plan(yard):
+    # Not the cheapest plan of all, which would only be found again.
+    return newly_planned(yard, rng(14))
+
+
+def poses(found):
+    """Stones, angles and corners in the order of placement."""
+    placed = [(p, p.settled) for p in found.build.wall.placements if p.settled]
+    return [(p.stone_id, p.posed.angle_deg, at.corners.tobytes()) for p, at in placed]
+
+
+def check(found, yard):
+    """The wall stands at every step, and the ends of its courses are those of its steps."""
+    courses, build = found.courses, found.build
+    assert courses.ends[0] == 0
+    assert list(courses.ends) == sorted(courses.ends)
+    assert courses.ends[-1] <= len(build.actions)
+    assert len(courses.ends) == len(courses.plan.courses) + 1
+    stones = [stone.stone_id for course in courses.plan.courses for stone in course]
+    assert len(set(stones)) == len(stones)
+    assert len(build.states()) == len(build.actions) + 1
+    assert all(a.sturdy and a.resistance.stable for a in build.actions)
+    placed = [p.stone_id for p in build.wall.placements]
+    assert len(set(placed)) == len(placed)
+    measured = FoundWall.measured(build, yard)
+    assert (measured.figures, measured.merit) == (found.figures, found.merit)
+
+
+def test_a_plan_is_laid_and_the_rest_goes_on_top(first_plan, yard):
+    check(first_plan, yard)
+    assert first_plan.figures.stones >= 6
+    again, *others = (newly_planned(yard, rng(seed)) for seed in (14, 3, 4))
+    assert poses(again) == poses(first_plan)
+    assert any(other is not None and poses(other) != poses(first_plan) for other in others)
+    begun = yard.planner()
+    begun.build = first_plan.build
+    scenes.proven(scenes.result_of(begun), yard.workshop.stones)
+
+
+@pytest.mark.parametrize("change", [replanned, relaid])
+def test_lower_courses_stay(change, first_plan, yard, monkeypatch):
+    begun = scenes.watched(monkeypatch, by_courses, "lay")
+    ends, changed = first_plan.courses.ends, set[int]()
+    for seed in range(4):
+        new = change(first_plan, yard, rng(seed))
+        check(new, yard)
+        same = [a == b for a, b in zip(poses(new), poses(first_plan), strict=False)]
+        count = same.index(False) if False in same else len(same)
+        # How many stay is what is drawn first.
+        kept = int(rng(seed).integers(len(ends) - 1))
+        (_, start, *_), _ = begun.pop()
+        assert len(start.actions) == ends[kept] <= count
+        if poses(new) != poses(first_plan):
+            changed.add(kept)
+    assert changed - {0}
+
+
+def test_it_goes_through_a_message(first_plan, yard):
+    packed = PackedWall.of(first_plan)
+    again = found_again(packed, yard)
+    assert poses(again) == poses(first_plan)
+    assert (again.courses, again.merit) == (first_plan.courses, first_plan.merit)
+    # What does not stand as it stood is an error, not another wall.
+    with pytest.raises(ValueError, match="do not stand"):
+        found_again(packed, yard_of(mu=0.01))
+
+
+@pytest.mark.parametrize("change", [newly_planned, relaid, recreated])
+def test_every_solve_that_failed_is_counted(change, first_plan, yard, monkeypatch):
+    """While a plan is laid, while steps are taken again, and while stones are added."""
+    solved, solve = [], Evaluator.loaded
+
+    def gives_up(*arguments):
+        loaded = solve(*arguments)
+        solved.append(len(solved) % 3 == 2)
+        return replace(loaded, grown=IncrementalResult(scenes.gave_up())) if solved[-1] else loaded
+
+    monkeypatch.setattr(Evaluator, "loaded", gives_up)
+    known = () if change is newly_planned else (first_plan,)
+    found = change(*known, yard, rng(5))
+    assert found.solves.failed == sum(solved) > 0
+
+
+@pytest.fixture(scope="module")
+def free(yard):
+    """A wall that was not planned."""
+    return scenes.finish(yard.planner(1)).build
+
+
+@pytest.mark.parametrize("ruin", RUINS)
+def test_what_rests_on_what_is_taken_down_goes_too(ruin, free):
+    settings, sizes = SearchSettings(largest=0.5), set()
+    placed = {p.stone_id for p in free.wall.placements}
+    resting = [
+        (one.other, one.block) if one.normal[1] > 0 else (one.block, one.other)
+        for one in free.model.interfaces
+        if {one.block, one.other} <= placed and abs(one.normal[1]) > 0.5
+    ]
+    for seed in range(12):
+        gone = taken_down(free, ruin, settings, rng(seed))
+        sizes.add(len(gone))
+        assert gone
+        assert gone <= placed
+        assert all(high in gone for low, high in resting if low in gone)
+        assert taken_down(free, ruin, settings, rng(seed)) == gone
+    assert len(sizes) > 1
+
+
+def test_joint_paths_are_those_of_the_wall_not_of_the_air_above_it():
+    stones = scenes.blocks(dict.fromkeys(range(1, 6), (20, 10)))
+    pile = scenes.finish(Planner(stones, Site(20, 300), settings=scenes.greedy())).build
+    *lower, highest = (p.stone_id for p in pile.wall.placements)
+    draws = [joint(pile, 1, rng(seed)) for seed in range(40)]
+    assert set().union(*draws) == {*lower, highest}
+    assert draws.count(frozenset({highest})) < 20
+    low = scenes.finish(Planner(stones, Site(20, 30), settings=scenes.greedy())).build
+    first, second, third = (p.stone_id for p in low.wall.placements)
+    assert with_all_above(low, frozenset({first})) == {first, second, third}
+    assert with_all_above(low, frozenset({second})) == {second, third}
+
+
+def test_what_stays_is_where_it_was(free, yard):
+    first = free.wall.placements[0].stone_id
+    gone = with_all_above(free, frozenset({first}))
+    left = without(free, gone, yard).build
+    before = {p.stone_id: p for p in free.wall.placements}
+    assert gone.isdisjoint(p.stone_id for p in left.wall.placements)
+    for p in left.wall.placements:
+        was = before[p.stone_id]
+        assert p.posed.angle_deg == was.posed.angle_deg
+        assert (p.exact.corners == was.exact.corners).all()
+    assert all(a.resistance.stable and a.sturdy for a in left.actions)
+    assert without(free, frozenset(), yard).build is free
+
+
+def drawn(known, *, planned):
+    draws, usual = rng(0), shares(planned=planned, polish=0.2)
+    return Counter(known.drawn(usual, draws) for _ in range(2000))
+
+
+def used(operator, times, helped):
+    known = Credits()
+    for k in range(times):
+        known = known.after(operator, helped=k < helped)
+    return known
+
+
+def test_what_has_helped_is_drawn_more_often_and_nothing_is_given_up():
+    known = used(RELAID, 30, 12) + used(RECREATED, 30, 0)
+    assert dict(zip(OPERATORS, known.uses, strict=True)) == {
+        RECREATED: 30, RELAID: 30, REPLANNED: 0, NEW: 0,
+    }  # fmt: skip
+    assert known.helped[OPERATORS.index(RELAID)] == sum(known.helped) == 12
+    counts, before = drawn(known, planned=True), drawn(Credits(), planned=True)
+    # Before anything is known they are drawn by their shares.
+    usual = shares(planned=True, polish=0.2)
+    for operator, share in zip(OPERATORS, usual, strict=True):
+        assert abs(before[operator] / 2000 - share / sum(usual)) < 0.04
+    assert counts[RELAID] > 1.5 * before[RELAID]
+    assert 0 < counts[RECREATED] < 0.3 * before[RECREATED]
+    assert min(counts[REPLANNED], counts[NEW]) > 0
+    # A wall without a plan is only built up again.
+    assert set(drawn(used(RECREATED, 50, 0), planned=False)) == {RECREATED}

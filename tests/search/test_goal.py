@@ -8,11 +8,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from drystone import Planner
 from drystone.craft.bond import bond_faults
 from drystone.craft.masonry import Masonry
 from drystone.model.builder import BuilderErrors, put_down_with, stratified
 from drystone.planner.build import Solves
-from drystone.planner.planner import Planner
 from drystone.planner.search_settings import GoalSettings
 from drystone.search.goal import (
     FoundWall,
@@ -26,7 +26,7 @@ from drystone.search.packed import MOST, STEPS, PackedWall, archived, score_of
 from drystone.search.rehearsal import groups_of, mean_size, put_up
 from drystone.search.wedging import one_more_wedge
 from drystone.search.yard import Yard
-from tests.planner.scenes import ROUNDED, ROUNDED_SITE, RUBBLE_SITE, finish, greedy, rubble
+from tests.planner import scenes
 from tests.strategies import repeatable
 
 WALL = WallFigures(stones=8, F_SF=0.8, F_LR=0.5, F_AV=20.0, F_AH=2.0, T_LEVEL=0.2, E_FLUSH=0.1)
@@ -55,6 +55,12 @@ def test_merit_rises_with_what_is_good_and_falls_with_what_is_bad(changes, gain)
     changed = replace(WALL, **changes)
     assert merit_of(changed, 0.9, GOAL) - merit_of(WALL, 0.9, GOAL) == pytest.approx(gain)
     assert merit_of(None, 0.9, GOAL) == -math.inf
+    # Nothing else makes up for a pinned stone: a tenth more in the wall for each, and all that the
+    # masons' walls have, is still worse.
+    best = {"F_LR": 1.0, "F_AV": 60.0, "F_AH": 0.5, "T_LEVEL": 0.0, "E_FLUSH": 0.0}
+    for missing in (1, 2):
+        lacking = replace(WALL, F_SF=WALL.F_SF + 0.1 * missing, **best, missing=missing)
+        assert merit_of(lacking, 1.0, GOAL) < merit_of(WALL, 1.0, GOAL)
 
 
 def test_a_stack_bond_costs_more_than_the_bricks_that_a_bond_leaves_out():
@@ -66,23 +72,11 @@ def test_a_stack_bond_costs_more_than_the_bricks_that_a_bond_leaves_out():
     assert GOAL.bond * faults > GOAL.filling * 2 / 30
 
 
-@pytest.mark.parametrize("seed", [0, 3])
-def test_what_is_judged_carries_no_more(seed):
-    """Without dilatancy a wall carries at most what it carries with it, and it is asked once."""
-    planner = finish(Planner(rubble(), RUBBLE_SITE, seed=seed, settings=greedy()))
-    found = FoundWall.of(planner)
-    judged = found.judged(Yard.of(planner))
-    assert found.figures.F_LR_coulomb is None
-    assert 0.0 <= judged.figures.F_LR_coulomb <= judged.figures.F_LR
-    assert judged.merit <= found.merit
-    assert judged.judged(Yard.of(planner)) is judged
-
-
 @pytest.fixture(scope="module")
 def careless():
     """A planner that has built a wall of which stones fall."""
-    settings = greedy({"settle": {"trials": 0}, "search": {"budget": 2}})
-    return finish(Planner(ROUNDED, ROUNDED_SITE, seed=1, settings=settings))
+    settings = scenes.greedy({"settle": {"trials": 0}, "search": {"budget": 2}})
+    return scenes.finish(Planner(scenes.ROUNDED, scenes.ROUNDED_SITE, seed=1, settings=settings))
 
 
 def test_what_nearly_falls_in_a_rehearsal_counts_too(careless):
@@ -144,35 +138,30 @@ def test_walls_that_are_rehearsed_together_fall_as_each_alone(careless):
 )
 def test_nothing_is_gained_beyond_an_aim(figure, short, aim, beyond, weight):
     goal = replace(GOAL, **{figure: aim})
-    merits = [
-        merit_of(replace(WALL, **{figure: value}), 1.0, goal) for value in (short, aim, beyond)
-    ]
+    walls = [replace(WALL, **{figure: value}) for value in (short, aim, beyond)]
+    merits = [merit_of(wall, 1.0, goal) for wall in walls]
     assert merits[0] < merits[1] == merits[2]
     assert merits[1] - merits[0] == pytest.approx(goal.urgent * weight * (aim - short))
 
 
-def test_figures_are_those_of_the_wall():
-    planner = finish(Planner(rubble(), RUBBLE_SITE, settings=greedy()))
-    placed = [action.stone_id for action in planner.build.actions]
+@pytest.mark.parametrize("seed", [0, 3])
+def test_figures_are_those_of_the_wall_and_judged_it_carries_no_more(seed):
+    """Without dilatancy a wall carries at most what it carries with it, and it is asked once."""
+    planner = scenes.of_rubble(scenes.greedy(), seed=seed)
+    placed = scenes.ids(planner)
     figures = figures_of(planner.build, [*placed[:2], 98, 99])
     assert (figures.stones, figures.missing) == (len(placed), 2)
     assert figures.F_SF == planner.build.wall.filling
     assert figures.F_LR == planner.build.actions[-1].resistance.value
-    assert figures.F_SF <= possible_filling(planner.workshop) <= 1.0
-    ban = [stone.id for stone in rubble()][:2]
-    without = Planner(rubble(), RUBBLE_SITE, settings=greedy({"ban": ban}))
-    assert figures_of(without.build) is None
-    lost = sum(rubble().by_id(stone_id).area_px for stone_id in ban) / 3600
-    filling = [possible_filling(one.workshop) for one in (planner, without)]
-    assert filling[0] - filling[1] == pytest.approx(lost)
-
-
-@pytest.mark.parametrize("missing", [1, 2])
-def test_nothing_else_makes_up_for_a_pinned_stone(missing):
-    """A tenth more in the wall for each, and all that the masons' walls have, is still worse."""
-    best = {"F_LR": 1.0, "F_AV": 60.0, "F_AH": 0.5, "T_LEVEL": 0.0, "E_FLUSH": 0.0}
-    lacking = replace(WALL, F_SF=WALL.F_SF + 0.1 * missing, **best, missing=missing)
-    assert merit_of(lacking, 1.0, GOAL) < merit_of(WALL, 1.0, GOAL)
+    possible = possible_filling(planner.workshop)
+    assert figures.F_SF <= possible == pytest.approx(scenes.rubble().total_area_px / 3600)
+    found = FoundWall.of(planner)
+    judged = found.judged(Yard.of(planner))
+    assert found.figures.F_LR_coulomb is None
+    assert 0.0 <= judged.figures.F_LR_coulomb <= judged.figures.F_LR
+    assert judged.merit <= found.merit
+    assert judged.judged(Yard.of(planner)) is judged
+    assert figures_of(scenes.of_rubble(scenes.greedy(), 0).build) is None
 
 
 def wall(merit=1.0, **changes):
@@ -225,14 +214,11 @@ def beaten(one, by):
 
 def naive(walls):
     """Those that none beats; of those that beat each other the first."""
-    kept = [
-        wall
-        for k, wall in enumerate(walls)
-        if not any(
-            beaten(wall, other) and (j < k or not beaten(other, wall))
-            for j, other in enumerate(walls)
-        )
-    ]
+    kept = []
+    for k, wall in enumerate(walls):
+        others = [one for j, one in enumerate(walls) if j < k or not beaten(one, wall)]
+        if not any(beaten(wall, other) for other in others):
+            kept.append(wall)
     return sorted(kept, key=rank, reverse=True)[:MOST]
 
 

@@ -1,34 +1,62 @@
 """Course plans laid on outlines: as planned where that is possible, and the truth where not."""
 
 from dataclasses import replace
-from itertools import chain
+from itertools import chain, pairwise
 
 import numpy as np
 import pytest
+import shapely
 
-from drystone.model.site import Site
+from drystone import Planner, Site, lateral_resistance
+from drystone.kernels.profiles import hanging
+from drystone.kernels.raster import turn
 from drystone.planner.evaluate import Evaluator, Loaded
 from drystone.planner.search_settings import LayingSettings
 from drystone.planner.seats import Seats
+from drystone.planner.views import SideView
+from drystone.planner.workshop import Workshop
+from drystone.search.courses import CoursePlan, PlannedStone
+from drystone.search.letting_go import Aim, Hand
+from drystone.search.mason import lay
+from drystone.search.yard import Yard
+from drystone.settle.rest import Turned
+from drystone.settle.wedge import wedged
 from drystone.statics.incremental import IncrementalResult
-from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import Block, RigidBlockModel
-from tests.planner.scenes import blocks, stones_of_masks
-from tests.search.yards import Plot
+from tests.planner import scenes
+from tests.planner.scenes import blocks
+
+
+class Plot:
+    """A yard, and course plans for it."""
+
+    def __init__(self, stones, site, changes=None):
+        settings = scenes.greedy(changes)
+        self.yard = Yard(Workshop.prepare(stones, site, settings), settings)
+
+    def planned(self, stone_id, left, bottom, side="left", angle=0.0, top=None):
+        outlines, stones = self.yard.workshop.outlines, self.yard.workshop.stones
+        corners = turn(outlines.outline(stones.by_id(stone_id)), angle)
+        low, high = corners.min(axis=0), corners.max(axis=0)
+        y = bottom - low[1]
+        return PlannedStone(
+            stone_id, angle, side, left - low[0], y, left, left + high[0] - low[0],
+            y + high[1] if top is None else top,
+        )  # fmt: skip
+
+    def lay(self, *courses, laying=None):
+        plan = CoursePlan(tuple(map(tuple, courses)), 0.0)
+        return lay(plan, self.yard.planner().build, self.yard, laying)
 
 
 def statuses(laid):
     return [[one.status for one in course] for course in laid.courses]
 
 
-def corners_of(laid):
-    return dict(laid.build.wall.exact.blocks)
-
-
 def boxes(laid):
     return {
         block: [*corners.min(axis=0).tolist(), *corners.max(axis=0).tolist()]
-        for block, corners in corners_of(laid).items()
+        for block, corners in laid.build.wall.exact.blocks
     }
 
 
@@ -109,7 +137,7 @@ def test_what_cannot_be_laid_is_told():
         laid = plot.lay(*courses)
         told = [*chain(*statuses(laid))]
         assert told == ["as planned"] * (len(told) - 1) + [why]
-        assert len(laid.build.actions) == len(corners_of(laid)) == len(told) - 1
+        assert len(laid.build.actions) == len(boxes(laid)) == len(told) - 1
     used = plot.lay([place(1, 0, 0)], [place(1, 25, 0)])
     assert statuses(used) == [["as planned"], ["used"]]
 
@@ -191,7 +219,7 @@ def test_of_places_that_stand_the_one_that_falls_least_is_taken(monkeypatch, sha
 
 
 def test_a_stone_on_its_tip_is_turned_by_half():
-    plot = Plot(stones_of_masks({1: np.ones((12, 24), bool), 2: TIP}), Site(60, 30))
+    plot = Plot(scenes.stones_of_masks({1: np.ones((12, 24), bool), 2: TIP}), Site(60, 30))
     laid = plot.lay([plot.planned(1, 0, 0), plot.planned(2, 24, 0)])
     assert statuses(laid) == [["as planned", "half turn"]]
     angle = laid.build.actions[1].stabilised.placement.posed.angle_deg
@@ -212,21 +240,168 @@ def test_a_stone_that_does_not_rest_is_wedged():
 def test_a_stone_goes_where_the_wall_resists_more():
     settings = {"settle": {"trials": 0}}
     plot = Plot(blocks({1: (22, 10), 2: (40, 10), 3: (12, 10)}), Site(50, 40), settings)
-    free = LayingSettings(
-        starts=30, enough=99, reach=3.0, width=0.0, top=0.0, turn=0.0, rest=0.0, judged=30
-    )
-    below = [plot.planned(1, 0, 0)], [plot.planned(2, 0, 10)]
+    nothing = dict.fromkeys(("width", "top", "turn", "rest"), 0.0)
+    free = LayingSettings(starts=30, enough=99, reach=3.0, **nothing, judged=30)
+    courses = [plot.planned(1, 0, 0)], [plot.planned(2, 0, 10)], [plot.planned(3, 28, 20, "right")]
     walls = [
-        plot.lay(*below, [plot.planned(3, 28, 20, "right")], laying=laying)
-        for laying in (
-            replace(free, llc=0.0, analysed=30),
-            replace(free, llc=1.0, analysed=30),
-            replace(free, llc=1.0, analysed=1),
-        )
+        plot.lay(*courses, laying=replace(free, llc=llc, analysed=analysed))
+        for llc, analysed in ((0.0, 30), (1.0, 30), (1.0, 1))
     ]
     assert [statuses(wall)[2] for wall in walls] == [["as planned"]] * 3
     cheapest, strongest, first = (wall.build.actions[-1] for wall in walls)
-    assert (strongest.indices.LLC or 0.0) > 1.2 * (cheapest.indices.LLC or 0.0)
+    assert strongest.indices.LLC > 1.2 * cheapest.indices.LLC
     # Further in over what carries it.
     assert boxes(walls[1])[3][2] < boxes(walls[0])[3][2] - 1.0
     assert first.resistance.value == cheapest.resistance.value
+
+
+class Drop:
+    """A stone of some rubble over four others."""
+
+    def __init__(self, side, laying):
+        settings = scenes.greedy({"settle": {"margin": 0.2}})
+        one = scenes.finish(Planner(scenes.rubble(1), scenes.RUBBLE_SITE, settings=settings), 4)
+        yard, outlines = Yard.of(one), one.build.wall.outlines
+        self.view = SideView.bare(100.0, side, 0.58, 1.0).grown(outlines.polygons)
+        stone = next(s for s in one.workshop.stones if s.id not in dict(outlines.blocks))
+        outline = one.workshop.outlines.outline(stone)
+        self.stone = Turned.of(outline, 0.0, side, stone.area_px**0.5)
+        self.hung = hanging(self.stone.corners, 1.0)
+        self.unit_px = one.workshop.stock.mean_height_px
+        self.hand = Hand(laying, yard.settings.settle, yard.limits, "both")
+
+    def lifts(self):
+        """Where the stone first touches, column by column."""
+        tops, bottoms = self.view.profile.tops.tolist(), self.hung.bottoms.tolist()
+        places = range(len(tops) - len(bottoms) + 1)
+        return [max(tops[at + k] - b for k, b in enumerate(bottoms)) for at in places]
+
+    def starts(self, left, top):
+        return self.hand.starts(self.stone, self.view, Aim(left, top, 0.0, 1e9, self.unit_px))
+
+    def resting(self, left, top, starts=None, highest=1e9):
+        starts = self.starts(left, top) if starts is None else starts
+        aim = Aim(left, top, 0.0, highest, self.unit_px)
+        return self.hand.resting(self.stone, self.view, aim, starts)
+
+
+def spots(resting):
+    return [(one.repose.settled.x_px, one.repose.settled.y_px) for one in resting]
+
+
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_stones_are_let_go_where_they_first_touch_the_cheapest_place_first(side):
+    drop = Drop(side, LayingSettings(starts=4, apart=0.1, reach=0.4, astray=2.0))
+    hung, lifts, size = drop.hung, drop.lifts(), drop.stone.size_px
+    starts = drop.starts(30.0, 20.0)
+    assert len(starts) == 4
+
+    def cost(at):
+        # A left end is at 30, or up to a quarter of a height further left.
+        lost = max(0.0, at - 30.0, 30.0 - 0.25 * drop.unit_px - at)
+        return abs(lifts[at] + 0.02 + hung.top - 20.0) + drop.hand.settings.width * lost
+
+    costs = []
+    for x, y in starts:
+        at = round(x + hung.left)
+        assert x + hung.left == pytest.approx(at, abs=1e-9)
+        assert y == pytest.approx(lifts[at] + 0.02, abs=1e-9)
+        costs.append(cost(at))
+    assert costs == sorted(costs)
+    columns = sorted(x for x, _ in starts)
+    assert min(b - a for a, b in pairwise(columns)) >= 0.1 * size
+    # No place beside these is cheaper.
+    inside = range(30 - int(0.4 * size), 30 + int(0.4 * size) + 1)
+    assert costs[0] <= min(map(cost, inside)) + 1e-9
+
+
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_stones_are_let_go_within_reach_not_too_high_and_inside(side):
+    drop = Drop(side, LayingSettings(starts=100, apart=0.0, reach=0.5, astray=9.0))
+    columns = sorted(round(x + drop.hung.left) for x, _ in drop.starts(30.0, 20.0))
+    reach = 0.5 * drop.stone.size_px
+    assert columns == list(range(round(29.5 - reach), round(30.5 + reach) + 1))
+    drop.hand = replace(drop.hand, settings=replace(drop.hand.settings, astray=0.3))
+    hung, highest = drop.hung, min(drop.lifts()) + drop.hung.top
+    starts = drop.starts(None, highest)
+    assert max(y + hung.top for _, y in starts) <= highest + 0.3 * drop.unit_px
+    assert min(x + hung.left for x, _ in starts) >= 0.0
+    assert max(x + hung.right for x, _ in starts) <= 100.25
+    assert drop.starts(None, highest - 0.4 * drop.unit_px) == []
+
+
+def test_starts_along_the_whole_wall_are_further_from_each_other():
+    drop = Drop("left", LayingSettings(starts=3, apart=0.0, spread=0.4, astray=9.0))
+    near, far = (sorted(x for x, _ in drop.starts(left, 20.0)) for left in (30.0, None))
+    assert len(near) == len(far) == 3
+    assert min(b - a for a, b in pairwise(far)) >= 0.4 * drop.stone.size_px
+    assert min(b - a for a, b in pairwise(near)) < 0.4 * drop.stone.size_px
+
+
+@pytest.mark.parametrize("name", ["top", "width", "turn", "rest"])
+def test_where_a_stone_rests_costs_what_the_settings_say(name):
+    plain = LayingSettings(top=0.0, width=0.0, turn=0.0, rest=0.0, astray=5.0, enough=99)
+    drop = Drop("right", replace(plain, **{name: 1.0}))
+    resting = drop.resting(20.0, 25.0)
+    assert resting
+    assert [one.cost for one in resting] == sorted(one.cost for one in resting)
+    for one in resting:
+        box = shapely.Polygon(one.repose.settled.corners).bounds
+        expected = {
+            "top": abs(box[3] - 25.0) / drop.unit_px,
+            "width": max(0.0, 100.0 - box[2] - 20.0) / drop.unit_px,
+            "turn": abs(one.repose.angle_deg) / 10.0,
+            "rest": max(0.0, 1.0 - one.repose.margin),
+        }
+        assert one.cost == pytest.approx(expected[name], abs=1e-9)
+    alike = {
+        (*map(round, at), r.repose.angle_deg) for at, r in zip(spots(resting), resting, strict=True)
+    }
+    assert len(alike) == len(resting)
+
+
+def test_a_stone_is_let_go_until_it_rests_in_enough_places():
+    drop = Drop("left", LayingSettings(astray=5.0, apart=0.2, enough=99))
+    starts = drop.starts(None, 25.0)
+    of_starts = [{*spots(drop.resting(None, 25.0, starts[: k + 1]))} for k in range(len(starts))]
+    assert len(of_starts[-1]) > len(of_starts[0]) >= 1
+    for enough in range(1, len(of_starts[-1]) + 1):
+        drop.hand = replace(drop.hand, settings=replace(drop.hand.settings, enough=enough))
+        first = next(found for found in of_starts if len(found) >= enough)
+        assert {*spots(drop.resting(None, 25.0, starts))} == first
+
+
+def test_a_stone_is_wedged_at_the_cheapest_place_first():
+    drop = Drop("left", LayingSettings(astray=5.0, apart=0.1, starts=9))
+    hand = replace(drop.hand, method="wedge", settle=replace(drop.hand.settle, margin=1.4))
+    drop.hand = hand = replace(hand, limits=replace(hand.limits, rest=0.05))
+    found, scene = drop.resting(None, 25.0), drop.view.scene
+    starts = drop.starts(None, 25.0)
+    one_by_one = [wedged(drop.stone, scene, at, hand.settle, hand.limits) for at in starts]
+    expected = {
+        (round(one.repose.settled.x_px), round(one.repose.settled.y_px)): one.wedge.tobytes()
+        for one in reversed(one_by_one)
+        if one is not None
+    }
+    assert len(found) == len(expected) > 1
+    assert [one.cost for one in found] == sorted(one.cost for one in found)
+    for one in found:
+        settled = one.repose.settled
+        top = float(settled.corners[:, 1].max())
+        unsure = hand.settings.rest * max(0.0, 1.0 - one.repose.margin)
+        assert one.cost == pytest.approx(abs(top - 25.0) / drop.unit_px + 0.2 + unsure)
+        assert one.wedge.tobytes() == expected[round(settled.x_px), round(settled.y_px)]
+
+
+def test_a_stone_that_rests_above_the_wall_or_far_from_its_top_does_not_count():
+    drop = Drop("left", LayingSettings(astray=5.0, enough=99))
+    starts = drop.starts(None, 25.0)
+    every = drop.resting(None, 25.0, starts)
+    tops = sorted(one.repose.settled.corners[:, 1].max() for one in every)
+    lower = float(tops[len(tops) // 2])
+    assert 0 < len(drop.resting(None, 25.0, starts, highest=lower)) < len(tops)
+    drop.hand = replace(drop.hand, settings=replace(drop.hand.settings, astray=0.01))
+    found = drop.resting(None, lower, starts)
+    assert 0 < len(found) < len(tops)
+    for one in found:
+        assert one.repose.settled.corners[:, 1].max() == pytest.approx(lower, abs=0.2)

@@ -63,16 +63,9 @@ def test_what_is_there_helps_to_fill_pixels():
     assert (later.col, later.posed.width_px) == (7, 2)
 
 
-@pytest.mark.parametrize(
-    "corners",
-    [box(5.1, 0.0, 5.5, 0.9), box(12.0, 0.0, 14.0, 3.0)],
-    ids=["too thin", "beside the wall"],
-)
-def test_no_pixel_of_the_wall_is_no_placement(corners):
-    assert placed(Site(12, 8), corners) is None
-
-
-def test_over_the_edge_there_are_no_pixels():
+def test_no_pixel_of_the_wall_is_no_placement_and_over_its_edge_there_are_none():
+    for corners in (box(5.1, 0.0, 5.5, 0.9), box(12.0, 0.0, 14.0, 3.0)):
+        assert placed(Site(12, 8), corners) is None
     made = placed(Site(12, 8), box(-0.6, 0.0, 12.6, 8.6))
     assert (made.row, made.col, made.posed.mask.shape) == (0, 0, (8, 12))
     assert made.posed.anchor == pytest.approx((6.0, 4.3))

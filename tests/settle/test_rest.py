@@ -1,6 +1,7 @@
 """Stones that come to rest: from both sides, by both methods, or not at all."""
 
 import math
+from functools import partial
 
 import numpy as np
 import pytest
@@ -13,9 +14,14 @@ from drystone.kernels.polygons import (
     mirrored_polygon,
     no_polygons,
     on_grid,
+    polygon_edges,
 )
+from drystone.kernels.profiles import hanging
 from drystone.kernels.raster import turn
 from drystone.kernels.settling import Status, settle
+from drystone.model.outline import stone_outline
+from drystone.model.stone import Stone
+from drystone.settle.book import OutlineBook
 from drystone.settle.rest import (
     SettlingScene,
     Turned,
@@ -33,6 +39,26 @@ from tests.polygons import box_about as box
 from tests.polygons import moved
 from tests.settle.piles import WIDTH, piles
 from tests.strategies import repeatable
+
+TRAPEZE = Stone(7, np.tri(9, 16, 5, dtype=bool))
+
+
+@pytest.mark.parametrize(("angle_deg", "tolerance_px"), [(0.0, 0.1), (90.0, 0.35), (-33.0, 2.0)])
+def test_hung_outlines_are_turned_then_mirrored_for_the_right(angle_deg, tolerance_px):
+    book = OutlineBook(tolerance_px, 2.0)
+    outline = book.outline(TRAPEZE)
+    assert (outline == stone_outline(TRAPEZE.mask, tolerance_px)).all()
+    left, right = (book.hung(TRAPEZE, angle_deg, side) for side in ("left", "right"))
+    assert (left.turned.corners == turn(outline, angle_deg)).all()
+    assert (right.turned.corners == mirrored_polygon(left.turned.corners, 0.0)).all()
+    for hung, side in ((left, "left"), (right, "right")):
+        assert (hung.turned.outline == outline).all()
+        assert (hung.turned.angle_deg, hung.turned.side) == (angle_deg, side)
+        assert hung.turned.size_px == pytest.approx(np.sqrt(TRAPEZE.area_px))
+        assert (hung.turned.edges == polygon_edges(hung.turned.corners)).all()
+        for mine, expected in zip(hung.profile, hanging(hung.turned.corners, 2.0), strict=True):
+            assert np.array_equal(mine, expected)
+
 
 MU = 0.58
 METHODS = ("energy", "pivot")
@@ -62,38 +88,52 @@ LOW = moved(BRICK, 50.0, 5.0 + CLEAR)
 """A brick on the ground."""
 
 
+held = partial(come_to_rest, turns=False)
+
+
+def rested(at, *others, stone=None, way=come_to_rest, **changes):
+    """What becomes of a stone, else the brick, that is let go among others."""
+    return way(stone or turned(), scene_of(*others), at, SettleSettings(**changes))
+
+
 @pytest.mark.parametrize("method", METHODS)
-def test_without_a_neighbour_it_rests_where_it_is_let_go(method):
-    found = come_to_rest(turned(), scene_of(), (50.0, 12.0), SettleSettings(method=method))
+def test_a_brick_rests_where_it_is_let_go_if_it_rests_firmly(method):
+    found = rested((50.0, 12.0), method=method)
     x, y, angle_deg = seen(found)
     assert (x, angle_deg, found.turned) == (50.0, 0.0, False)
     assert y == pytest.approx(5.0 + CLEAR, abs=FINE)
     assert found.margin == pytest.approx(1.0, abs=1e-2)  # it slides before it tips
+    firm = 1.0 / 5.0 / MU  # what is left of the support over the height of the centroid
+    rests = rested((59.0, 16.0), LOW, way=held, method=method, margin=firm - 0.01)
+    assert (rests.margin, rests.settled.x_px) == (pytest.approx(firm, abs=0.005), 59.0)
+    assert rested((59.0, 16.0), LOW, way=held, method=method, margin=firm + 0.01) is None
+    # What lies too deep in others is not let go.  A little is brought apart.
+    low = moved(BRICK, 50.0, 5.0)
+    assert rested((53.0, 14.4), low, method=method) is None
+    apart = rested((53.0, 14.6), low, method=method)
+    assert seen(apart) == pytest.approx((53.0, 15.0 + CLEAR, 0.0), abs=1e-3)
 
 
 def test_energy_closes_the_joint_on_the_building_side_and_pivot_does_not():
-    scene = scene_of(moved(BRICK, 40.0, 5.0 + CLEAR))
-    pushed = come_to_rest(turned(), scene, (62.0, 12.0), ENERGY)
+    beside = moved(BRICK, 40.0, 5.0 + CLEAR)
+    pushed, stays = (rested((62.0, 12.0), beside, method=method) for method in METHODS)
     assert seen(pushed) == pytest.approx((60.0 + CLEAR, 5.0 + CLEAR, 0.0), abs=1e-3)
-    stays = come_to_rest(turned(), scene, (62.0, 12.0), SettleSettings(method="pivot"))
     assert seen(stays) == pytest.approx((62.0, 5.0 + CLEAR, 0.0), abs=FINE)
     # Too far for a push, which is then not made at all.
-    assert seen(come_to_rest(turned(), scene, (70.0, 12.0), ENERGY))[0] == 70.0
+    assert seen(rested((70.0, 12.0), beside))[0] == 70.0
 
 
 def ramp(slope_deg):
     """It goes up to the right from x = 20, and ends at 120."""
-    return np.array(
-        [[20.0, CLEAR], [120.0, CLEAR], [120.0, 100 * math.tan(math.radians(slope_deg))]]
-    )
+    top = 100 * math.tan(math.radians(slope_deg))
+    return np.array([[20.0, CLEAR], [120.0, CLEAR], [120.0, top]])
 
 
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize(("slope_deg", "rests"), [(20.0, True), (27.0, False), (45.0, False)])
 def test_what_slides_away_is_nowhere(method, slope_deg, rests):
-    settings = SettleSettings(method=method, margin=0.3)
-    start = (70.0, 50.0 * math.tan(math.radians(slope_deg)) + 8.0)
-    found = come_to_rest(turned(BRICK, slope_deg), scene_of(ramp(slope_deg)), start, settings)
+    at, stone = (70.0, 50.0 * math.tan(math.radians(slope_deg)) + 8.0), turned(BRICK, slope_deg)
+    found = rested(at, ramp(slope_deg), stone=stone, method=method, margin=0.3)
     assert (found is not None) == rests
     if found is not None:
         # Gravity may lean until the friction angle is reached.
@@ -102,49 +142,21 @@ def test_what_slides_away_is_nowhere(method, slope_deg, rests):
         assert found.angle_deg == pytest.approx(slope_deg, abs=0.3)
 
 
-@pytest.mark.parametrize("method", METHODS)
-def test_it_must_rest_with_a_margin(method):
-    firm = 1.0 / 5.0 / MU  # what is left of the support over the height of the centroid
-
-    def found(margin):
-        settings = SettleSettings(method=method, margin=margin)
-        return come_to_rest(turned(), scene_of(LOW), (59.0, 16.0), settings, turns=False)
-
-    rests = found(firm - 0.01)
-    assert rests.margin == pytest.approx(firm, abs=0.005)
-    assert rests.settled.x_px == 59.0
-    assert found(firm + 0.01) is None
-
-
-@pytest.mark.parametrize("method", METHODS)
-def test_what_lies_too_deep_in_others_is_not_let_go(method):
-    scene, settings = scene_of(moved(BRICK, 50.0, 5.0)), SettleSettings(method=method)
-    assert come_to_rest(turned(), scene, (53.0, 14.4), settings) is None
-    # A little is brought apart.
-    apart = come_to_rest(turned(), scene, (53.0, 14.6), settings)
-    assert seen(apart) == pytest.approx((53.0, 15.0 + CLEAR, 0.0), abs=1e-3)
-
-
-def test_it_does_not_turn_further_than_it_may():
-    stone, scene = turned(BRICK, 5.0), scene_of()
-    assert come_to_rest(stone, scene, (50.0, 12.0), SettleSettings(max_turn_deg=4.0)) is None
-    fallen = come_to_rest(stone, scene, (50.0, 12.0), SettleSettings(max_turn_deg=6.0))
+def test_it_does_not_turn_further_than_it_may_and_touches_down_without_balance():
+    tilted = turned(BRICK, 5.0)
+    assert rested((50.0, 12.0), stone=tilted, max_turn_deg=4.0) is None
+    fallen = rested((50.0, 12.0), stone=tilted, max_turn_deg=6.0)
     assert seen(fallen) == pytest.approx((50.0, 5.0 + CLEAR, 0.0), abs=2e-3)
-    # On one corner.
-    assert come_to_rest(stone, scene, (50.0, 12.0), ENERGY, turns=False) is None
-
-
-def test_touching_down_needs_no_balance():
-    scene, settings = scene_of(LOW), SettleSettings(margin=0.9)
-    low = touch_down(turned(), scene, (62.0, 18.0), settings)
+    assert rested((50.0, 12.0), stone=tilted, way=held) is None  # on one corner
+    low, firm = (rested((x, 18.0), LOW, way=touch_down, margin=0.9) for x in (62.0, 52.0))
     assert seen(low) == pytest.approx((62.0, 15.0 + 2 * CLEAR, 0.0), abs=FINE)
     assert (low.margin, low.turned) == (-1.0, False)
-    firm = touch_down(turned(), scene, (52.0, 18.0), settings)
     assert firm.margin == pytest.approx(1.0, abs=1e-2)
-    assert come_to_rest(turned(), scene, (62.0, 18.0), ENERGY) is None
+    assert rested((62.0, 18.0), LOW) is None
     # What slides away or lies in another does not touch down.
-    assert touch_down(turned(BRICK, 20.0), scene_of(ramp(20.0)), (70.0, 27.0), ENERGY) is None
-    assert touch_down(turned(), scene, (50.0, 10.0), ENERGY) is None
+    sliding = turned(BRICK, 20.0)
+    assert rested((70.0, 27.0), ramp(20.0), stone=sliding, way=touch_down) is None
+    assert rested((50.0, 10.0), LOW, way=touch_down) is None
 
 
 def test_ways_to_settle():
@@ -230,17 +242,8 @@ def test_from_the_right_everything_is_mirrored(scene, method, turns, joint_px):
     right = SettlingScene.of(around.mirrored(WIDTH), WIDTH, "right", MU)
     one = Turned.of(outline, angle_deg, "left", size)
     other = Turned.of(mirrored_polygon(outline, 0.0), -angle_deg, "right", size)
-    for first, second in (
-        (
-            come_to_rest(one, left, start, settings, turns=turns),
-            come_to_rest(other, right, start, settings, turns=turns),
-        ),
-        (touch_down(one, left, start, settings), touch_down(other, right, start, settings)),
-        (
-            lay(one, left, start, settings),
-            lay(other, right, start, settings),
-        ),
-    ):
+    for way in (partial(come_to_rest, turns=turns), touch_down, lay):
+        first, second = (way(*on, start, settings) for on in ((one, left), (other, right)))
         assert (first is None) == (second is None)
         if first is None or second is None:
             continue
@@ -258,12 +261,10 @@ def test_rounding_is_no_turn(monkeypatch):
     """The linear programs of a stone that may not turn leave turns of about 1e-18."""
     slightly = "drystone.settle.rest.settle"
     monkeypatch.setattr(slightly, lambda *args: settle(*args)._replace(angle=4e-18))
-    for found in (
-        come_to_rest(turned(), scene_of(), (50.0, 12.0), ENERGY, turns=False),
-        touch_down(turned(), scene_of(), (50.0, 12.0), ENERGY),
-    ):
+    for way in (held, touch_down):
+        found = rested((50.0, 12.0), way=way)
         assert (found.angle_deg, found.turned) == (0.0, False)
-    assert come_to_rest(turned(), scene_of(), (50.0, 12.0), ENERGY).turned
+    assert rested((50.0, 12.0)).turned
 
 
 @pytest.mark.parametrize(
@@ -276,7 +277,7 @@ def test_rounding_is_no_turn(monkeypatch):
     ],
 )
 def test_a_stone_that_is_laid_stays_or_is_lost(x, y, rests_px, abs_px):
-    found = lay(turned(), scene_of(LOW), (x, y), ENERGY)
+    found = rested((x, y), LOW, way=lay)
     assert (found is None) == (rests_px is None)
     if found is not None:
         assert found.settled.y_px == pytest.approx(rests_px, abs=abs_px)
@@ -285,11 +286,10 @@ def test_a_stone_that_is_laid_stays_or_is_lost(x, y, rests_px, abs_px):
 
 
 def test_a_stone_keeps_a_joint_to_its_neighbour_where_it_rests_so():
-    open_, closed = SettleSettings(joint_px=0.7), ENERGY
-    scene = scene_of(BRICK + np.array((30.0, 5.0)))
-    ends = [come_to_rest(turned(), scene, (52.0, 6.0), one) for one in (closed, open_)]
-    assert [end.settled.x_px - 50.0 for end in ends] == pytest.approx([0.0, 0.7], abs=0.1)
-    assert [end.settled.y_px for end in ends] == pytest.approx([5.0, 5.0], abs=0.05)
+    beside = BRICK + np.array((30.0, 5.0))
+    ends = [rested((52.0, 6.0), beside, joint_px=joint_px).settled for joint_px in (0.0, 0.7)]
+    assert [end.x_px - 50.0 for end in ends] == pytest.approx([0.0, 0.7], abs=0.1)
+    assert [end.y_px for end in ends] == pytest.approx([5.0, 5.0], abs=0.05)
     # The end of the wall is not a neighbour.
-    alone = [come_to_rest(turned(), scene_of(), (10.0, 6.0), one) for one in (closed, open_)]
-    assert alone[0].settled.x_px == alone[1].settled.x_px
+    alone = [rested((10.0, 6.0), joint_px=joint_px).settled.x_px for joint_px in (0.0, 0.7)]
+    assert alone[0] == alone[1]

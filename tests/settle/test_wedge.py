@@ -1,4 +1,4 @@
-"""Wedges under stones that would fall: drawn by hand, and on random piles."""
+"""Wedges: under stones that would fall, anywhere under a stone, and stones let down onto one."""
 
 from dataclasses import replace
 
@@ -10,20 +10,29 @@ from hypothesis import strategies as st
 
 from drystone.kernels.crevice import crevice
 from drystone.kernels.polygons import (
+    GRID,
     area_and_centroid,
     mirrored_polygon,
     no_polygons,
+    on_grid,
 )
 from drystone.kernels.settling import rest_margin
+from drystone.settle.rest import SettlingScene, Turned
+from drystone.settle.settings import SettleSettings
 from drystone.settle.wedge import (
+    PLACES,
     CreviceSlabs,
     WedgeLimits,
     _near,
+    all_spans,
     falling_side,
+    gridded,
     met_below,
     parts,
     squeezed_out,
     wedge_under,
+    wedged,
+    wedges_below,
 )
 from tests.naive.crevice import gap_at
 from tests.naive.wedge_shape import covered, objections
@@ -32,12 +41,9 @@ from tests.settle.piles import WIDTH, piles
 from tests.strategies import repeatable
 
 LIMITS = WedgeLimits(least_thickness=0.5, greatest_height=6.0)
-SIZES = 0.4, 4.0, 12.0, 0.5
-STRICT = WedgeLimits(
-    least_thickness=SIZES[0], greatest_height=SIZES[1], greatest_area=SIZES[2], mu=SIZES[3],
-    room_px=20.0,
-)  # fmt: skip
-"""Least thickness, greatest height, greatest area, friction; all of them matter in piles."""
+SIZES = {"least_thickness": 0.4, "greatest_height": 4.0, "greatest_area": 12.0, "mu": 0.5}
+STRICT = WedgeLimits(**SIZES, room_px=20.0)
+"""All of it matters in piles."""
 
 
 def centroid(polygon):
@@ -91,9 +97,7 @@ def test_where_the_gap_is_too_narrow_there_is_no_wedge():
     """From the centre of mass to the end of the stone, and as far as the next wall inwards."""
     stone = box(10.0, 2.01, 15.2, 4.0)
     scene = no_polygons().added([box(10, 0, 12.4, 2), box(12.4, 0, 16, 1.5)])
-    wide, narrow = (
-        WedgeLimits(least_thickness=least, greatest_height=3.0) for least in (0.45, 0.4)
-    )
+    wide, narrow = (replace(LIMITS, least_thickness=least) for least in (0.45, 0.4))
     assert wedge_for(stone, scene, wide) is not None
     # A slot of 1.27 px is left: three times as wide as the second is thick at least.
     scene = scene.added([box(13.7, 1.5, 15, 1.9)])
@@ -110,11 +114,9 @@ def test_no_face_is_steeper_than_friction_holds(above):
     if above:
         stone = np.array([[10, 4.01], [13, 4.01], [23, 9.01], [23, 12], [10, 12]])
         scene = no_polygons().added([box(10, 0, 13, 4)])
-    mild, slippery = (
-        WedgeLimits(least_thickness=1.0, greatest_height=8.0, mu=mu) for mu in (0.51, 0.49)
-    )
-    assert wedge_for(stone, scene, mild) is not None
-    assert wedge_for(stone, scene, slippery) is None
+    for mu, found in ((0.51, True), (0.49, False)):
+        limits = WedgeLimits(least_thickness=1.0, greatest_height=8.0, mu=mu)
+        assert (wedge_for(stone, scene, limits) is not None) == found
 
 
 def test_a_wedge_at_the_end_of_the_wall_has_something_beside_it():
@@ -149,6 +151,9 @@ def test_a_stone_that_rests_or_touches_nothing_has_no_wedge():
     for smallest, largest, found in ((0.5, 1.98, False), (2.0, 6.0, False), (1.98, 2.0, True)):
         limits = WedgeLimits(least_thickness=smallest, greatest_height=largest)
         assert (wedge_for(PLANK, SCENE, limits) is not None) == found
+    # The plank lifts off when gravity leans to the left by more than (15 - 11) / 1.
+    assert wedge_for(PLANK, SCENE, replace(LIMITS, rest=0.99)) is not None
+    assert wedge_for(PLANK, SCENE, replace(LIMITS, rest=1.01)) is None
 
 
 def test_to_which_side_a_stone_falls():
@@ -164,12 +169,6 @@ def test_to_which_side_a_stone_falls():
     assert falling_side(moved(leaning, 0.0, 0.02), 11.9, roof, LIMITS) == 0
 
 
-def test_the_margin_that_the_stone_keeps_is_asked_for():
-    """The plank lifts off when gravity leans to the left by more than (15 - 11) / 1."""
-    assert wedge_for(PLANK, SCENE, replace(LIMITS, rest=0.99)) is not None
-    assert wedge_for(PLANK, SCENE, replace(LIMITS, rest=1.01)) is None
-
-
 @repeatable(120)
 @given(piles(), st.sampled_from([0.0, 0.1]))
 def test_wedges_touch_hold_and_overlap_nothing(pile, margin):
@@ -179,16 +178,14 @@ def test_wedges_touch_hold_and_overlap_nothing(pile, margin):
     wedge = wedge_for(stone, around, limits)
     if wedge is None:
         return
-    shape, held = shapely.Polygon(wedge), shapely.Polygon(stone)
-    others = [shapely.Polygon(around.polygon(i)) for i in range(len(around))]
-    below = shapely.union_all([shapely.box(-99, -9, 199, 0), *others])
-    assert shape.is_valid
-    assert shapely.LinearRing(wedge).is_ccw
-    for body in (held, below):
-        assert shape.intersection(body).area == 0.0
-        assert limits.clearance_px / 2 <= shape.distance(body) <= 2 * limits.clearance_px
-    assert max(objections(wedge, *SIZES).values()) <= 1e-6
-    assert stays_in(wedge, stone, others, limits.room_px)
+    others = [around.polygon(i) for i in range(len(around))]
+    assert_fits(wedge, stone, others, 1e-6)
+    beside = covered(wedge, [*others, stone])  # there, or there is room for a stone; rows are few
+    ends = stone[:, 0].min(), WIDTH - stone[:, 0].max()
+    assert all(
+        share >= 0.48 or end >= STRICT.room_px - 1e-4
+        for share, end in zip(beside, ends, strict=True)
+    )
     # It brings the centre of mass inside the support.
     wanted = limits.margin * float(np.ptp(stone[:, 0]))
     outer = wedge[:, 0].max() if side > 0 else wedge[:, 0].min()
@@ -199,13 +196,15 @@ def test_wedges_touch_hold_and_overlap_nothing(pile, margin):
     assert rest_margin(stone, centroid(stone), with_it, WIDTH, mu, tolerance) >= 0.0
 
 
-def stays_in(wedge, stone, others, room):
-    """Whether something is beside a wedge on each side, or room for a stone; rows may be few."""
-    shapes = [np.array(other.exterior.coords[:-1]) for other in (*others, shapely.Polygon(stone))]
-    left, right = covered(wedge, shapes)
-    return (left >= 0.48 or stone[:, 0].min() >= room - 1e-4) and (
-        right >= 0.48 or stone[:, 0].max() <= WIDTH - room + 1e-4
-    )
+def assert_fits(wedge, stone, others, slack):
+    """A wedge is near to what is above and below it, overlaps nothing, and has a fit shape."""
+    shape = shapely.Polygon(wedge)
+    below = shapely.union_all([shapely.box(-99, -9, 199, 0), *map(shapely.Polygon, others)])
+    assert shape.is_valid
+    assert shapely.LinearRing(wedge).is_ccw
+    for body in (shapely.Polygon(stone), below):
+        assert STRICT.clearance_px / 2 <= shape.distance(body) <= 2 * STRICT.clearance_px
+    assert max(objections(wedge, **SIZES).values()) <= slack
 
 
 @repeatable(80)
@@ -219,7 +218,6 @@ def test_a_mirrored_scene_gives_the_mirrored_wedge(pile, limits):
         assert mirrored_polygon(other, WIDTH) == pytest.approx(one, abs=1e-9)
 
 
-@repeatable(60)
 @given(piles(), st.lists(st.floats(0.001, 0.999), min_size=8, max_size=8))
 def test_parts_are_where_upright_lines_are_as_long_as_a_wedge(pile, shares):
     stone, around = pile
@@ -249,3 +247,89 @@ def test_a_stone_meets_what_is_beside_it_and_so_far_below_as_a_wedge_is_high():
     assert np.flatnonzero(met).tolist() == [0, 1, 2, 3, 4]
     assert _near(stone, wall, LIMITS, 0).boxes.tolist() == wall.boxes[1:5].tolist()
     assert len(_near(stone, wall, LIMITS)) == 5
+
+
+def test_each_part_of_a_crevice_has_its_places_and_itself():
+    """The stone is no obstacle to its own wedges."""
+    limits = WedgeLimits(least_thickness=0.6, greatest_height=2.5)
+    under = no_polygons().added([moved(POST, 2.0)])
+    found = all_spans(CreviceSlabs.of(crevice(PLANK, under, limits.clearance_px)), PLACES, limits)
+    left = [span for span in found if span[1] < 13.0]
+    right = [span for span in found if span[0] > 16.0]
+    assert found == left + right
+    assert (10.0, pytest.approx(12.99)) in left
+    assert (pytest.approx(16.01), 20.0) in right
+    # As wide as high where there is room, 1.25 times.
+    widths = sorted(stop - start for start, stop in right)
+    assert widths[0] == pytest.approx(1.25 * 1.99)
+    assert max(widths) == pytest.approx(3.99)
+    starts = sorted(start for start, _ in right)
+    assert starts[0] == pytest.approx(16.01)
+    assert starts[-1] == pytest.approx(20.0 - 1.25 * 1.99)
+    assert len(set(found)) == len(found)
+    wall = under.added([PLANK])
+    wedges = list(wedges_below(wall, 1, limits))
+    assert len(wedges) == len(found)
+    assert {(float(w[:, 0].min()), float(w[:, 0].max())) for w in wedges} == {
+        tuple(on_grid(np.array(span)).tolist()) for span in found
+    }
+    assert list(wedges_below(wall, 0, limits)) == []
+
+
+def test_corners_that_the_grid_makes_one_are_one():
+    tiny = 1e-7
+    corners = np.array([[0, tiny], [0, 0], [2, 0], [2, tiny], [2, 2 * tiny], [2, 1], [0, 1]])
+    assert gridded(corners).tolist() == [[0, 0], [2, 0], [2, 1], [0, 1]]
+
+
+@given(piles())
+def test_wedges_anywhere_fit_and_overlap_nothing(pile):
+    stone, around = pile
+    others = [around.polygon(i) for i in range(len(around))]
+    for wedge in wedges_below(around.added([stone]), len(around), STRICT):
+        assert_fits(wedge, stone, others, 1e-5)
+        assert np.array_equal(on_grid(wedge), wedge)
+
+
+FIRM = replace(LIMITS, rest=0.2, contact_px=0.05)
+
+
+def lowered(side, start=(15.0, 6.0), limits=FIRM, others=(POST,)):
+    """The plank let go as the side sees it, in a scene that it sees the same from either side."""
+    around = no_polygons().added(others)
+    around = around if side == "left" else around.mirrored(WIDTH)
+    outline = PLANK - centroid(PLANK)
+    scene = SettlingScene.of(around, WIDTH, side, 0.58)
+    return wedged(Turned.of(outline, 0.0, side, 20.0**0.5), scene, start, SettleSettings(), limits)
+
+
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_the_free_side_gets_a_wedge_that_holds_the_stone(side):
+    found = lowered(side)
+    settled, wedge = found.repose.settled, found.wedge
+    assert area_and_centroid(wedge)[0] > 0.0
+    assert (wedge * GRID == np.round(wedge * GRID)).all()
+    assert (found.repose.angle_deg, found.repose.turned) == (0.0, False)
+    corners, x = settled.corners, settled.x_px
+    if side == "right":
+        corners, wedge = (mirrored_polygon(one, WIDTH) for one in (corners, wedge))
+        x = WIDTH - x
+    assert (x, settled.y_px) == pytest.approx((15.0, 3.005), abs=1e-4)
+    (left, low), (right, high) = wedge.min(axis=0), wedge.max(axis=0)
+    assert left == pytest.approx(15.0, abs=1e-5)  # from the centre of mass on
+    assert right - left == pytest.approx(1.25 * (high - low), abs=1e-4)
+    assert (low, high) == pytest.approx((0.01, 2.0), abs=1e-4)
+    here = corners, (x, settled.y_px)
+    for wedges, firm in (([], False), ([wedge], True)):
+        around = no_polygons().added([POST, *wedges])
+        assert (rest_margin(*here, around, WIDTH, 0.58, 0.05) >= 0.2) == firm
+
+
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_no_wedge_where_none_is_needed_or_none_fits_or_the_stone_slides_away(side):
+    assert lowered(side, (12.5, 6.0)) is None  # it lies over its support
+    low = replace(FIRM, greatest_height=1.9)
+    assert lowered(side, limits=low) is None
+    assert lowered(side, limits=replace(FIRM, rest=9.0)) is None
+    roof = np.array([[5.0, 0.01], [25.0, 0.01], [15.0, 20.0]])
+    assert lowered(side, (19.0, 25.0), others=(roof,)) is None

@@ -6,6 +6,7 @@ from hypothesis import strategies as st
 from drystone.model.stone import Stone
 from drystone.poses import PoseBook
 from tests.naive.overlap import lowered
+from tests.naive.support import rests_stably
 
 BOOK = PoseBook()
 BAR = BOOK.pose(Stone(1, np.ones((6, 30), bool)), 0.0)
@@ -21,17 +22,25 @@ def ledge(height=4, width=14, site=(24, 50)):
     return occupied
 
 
-def bar_on_the_ledge(occupied, book, col=2, length=30):
+def bar_on_the_ledge(occupied):
     """A bar that lies on the ledge and overhangs to the right."""
-    posed = book.pose(Stone(7, np.ones((6, length), bool)), 0.0)
-    top = int(np.flatnonzero(occupied[:, col])[0])
-    return posed, top - 6, col
+    return BAR, int(np.flatnonzero(occupied[:, 2])[0]) - 6, 2
 
 
-def mirrored(occupied, pose, book):
+def holds(occupied, pose, wedges, margin=0.0):
+    """Whether a stone is stable on its wedges."""
+    posed, row, col = pose
+    scene = occupied.copy()
+    for wedge in wedges:
+        scene[wedge.window] |= wedge.mask
+    x_c, margin_px = col + posed.anchor[0], margin * posed.width_px
+    return rests_stably(scene, posed.mask, row, col, x_c, margin_px)
+
+
+def mirrored(occupied, pose):
     """The same scene with the stone's own mirror image, as another stone."""
     posed, row, col = pose
-    other = book.pose(Stone(posed.stone.id + 1, posed.stone.mask[:, ::-1]), 0.0)
+    other = BOOK.pose(Stone(posed.stone.id + 1, posed.stone.mask[:, ::-1]), 0.0)
     return occupied[:, ::-1].copy(), (other, row, occupied.shape[1] - col - posed.width_px)
 
 

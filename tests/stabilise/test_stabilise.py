@@ -1,67 +1,79 @@
-"""Support, rotation first, wedging second (§3.7, Figs. 9 and 20, DESIGN 4.6)."""
+"""Support, rotation first, wedging second (§3.7, Figs. 9 and 20, DESIGN 4.6), and remembering."""
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy import ndimage
 
+import drystone.stabilise.memory as memory_module
 from drystone.model.stone import Stone
 from drystone.poses import PoseBook
+from drystone.stabilise.memory import StabiliseMemory
 from drystone.stabilise.settings import StabiliseSettings
 from drystone.stabilise.stabilise import (
-    Support,
     WedgeStock,
     make_stable,
     rotate_to_rest,
     stabilise,
-    support_polyline,
+    wedge_under,
 )
 from tests.naive import support as naive
-from tests.stabilise.scenes import BOOK, bar_on_the_ledge, ledge, stairs
-from tests.stabilise.test_wedge import check_wedge, holds
+from tests.naive.overlap import lowered, overlaps
+from tests.stabilise.scenes import (
+    BAR,
+    BLOCK,
+    BOOK,
+    bar_on_the_ledge,
+    high_walls,
+    holds,
+    ledge,
+    mirrored,
+    stairs,
+)
 from tests.strategies import posed_on_walls, repeatable
 
 STOCK = WedgeStock(next_id=100, mean_height_px=12.0)
 METHODS = ("both", "rotation", "wedge", "none")
 
 
-def stabilised_bar(method, **limits):
-    book, occupied = PoseBook(), ledge()
-    settings = StabiliseSettings(method=method, **limits)
-    return stabilise(occupied, bar_on_the_ledge(occupied, book), "left", book, STOCK, settings)
-
-
 def test_methods_select_rotation_wedging_both_or_neither():
-    assert stabilised_bar("none") is None
-    rotated = stabilised_bar("rotation")
+    """Wedging comes when rotation fails, and starts from the trial pose."""
+
+    def stabilised(method, **limits):
+        occupied, settings = ledge(), StabiliseSettings(method=method, **limits)
+        return stabilise(occupied, bar_on_the_ledge(occupied), "left", BOOK, STOCK, settings)
+
+    assert stabilised("none") is None
+    rotated = stabilised("rotation")
     assert rotated.placement.posed.angle_deg < 0
     assert rotated.placement.rotation_moves >= 1
     assert rotated.wedges == ()
-    wedged = stabilised_bar("wedge")
-    assert (wedged.placement.posed.angle_deg, wedged.placement.rotation_moves) == (0.0, 0)
-    assert [wedge.id for wedge in wedged.wedges] == [100]
-    both = stabilised_bar("both")
-    assert both.placement.posed.angle_deg == rotated.placement.posed.angle_deg
+    assert stabilised("both").placement.posed.angle_deg == rotated.placement.posed.angle_deg
+    assert stabilised("rotation", max_turn_deg=5.0) is None
+    for wedged in (stabilised("wedge"), stabilised("both", max_turn_deg=5.0)):
+        assert (wedged.placement.posed.angle_deg, wedged.placement.rotation_moves) == (0.0, 0)
+        assert [wedge.id for wedge in wedged.wedges] == [100]
 
 
-def test_wedging_comes_when_rotation_fails_and_starts_from_the_trial_pose():
-    assert stabilised_bar("rotation", max_turn_deg=5.0) is None
-    both = stabilised_bar("both", max_turn_deg=5.0)
-    assert both.placement.posed.angle_deg == 0.0
-    assert len(both.wedges) == 1
-
-
-def test_a_stone_balanced_on_a_point_is_wedged_on_both_sides_or_refused():
-    """With a margin, a support too narrow for it must be widened to both sides."""
-    book = PoseBook()
-    occupied = np.zeros((24, 50), bool)
-    occupied[20:, 16:18] = True
-    posed, row, _ = bar_on_the_ledge(occupied, book, col=16, length=30)
-    trial = posed, row, 2
-    settings = StabiliseSettings(method="wedge", margin=0.1)
-    result = stabilise(occupied, trial, "left", book, STOCK, settings)
-    assert [wedge.id for wedge in result.wedges] == [100, 101]
-    assert holds(occupied, trial, result.wedges, 0.1)
+def check_wedge(occupied, pose, wedge, largest_px, settings):
+    """What DESIGN 4.6 asks of a wedge."""
+    posed, row, col = pose
+    stone = np.zeros_like(occupied)
+    stone[row : row + posed.height_px, col : col + posed.width_px] = posed.mask
+    cut = np.zeros_like(occupied)
+    cut[wedge.window] = wedge.mask
+    assert not (cut & (stone | occupied)).any()
+    assert ndimage.label(wedge.mask)[1] == 1
+    assert wedge.under == posed.stone.id
+    for column in range(wedge.mask.shape[1]):
+        rows = np.flatnonzero(cut[:, wedge.col + column])
+        assert settings.min_wedge_px <= rows.size <= largest_px
+        assert rows.size == rows[-1] - rows[0] + 1
+        assert stone[rows[0] - 1, wedge.col + column]  # touches the stone all along
+        under = rows[-1] + 1
+        assert under == len(occupied) or occupied[under, wedge.col + column]  # and what is below
+    assert wedge.mask.shape[1] >= settings.min_wedge_px
 
 
 @repeatable(80)
@@ -70,10 +82,8 @@ def test_a_stone_balanced_on_a_point_is_wedged_on_both_sides_or_refused():
 )
 def test_whatever_comes_out_is_a_stable_rigid_copy_inside_the_site(scene, method, margin):
     wall, posed, row, col = scene
-    book = PoseBook()
-    settings = StabiliseSettings(method=method, margin=margin)
-    stock = WedgeStock(100, 8.0)
-    result = stabilise(wall.occupied, (posed, row, col), "right", book, stock, settings)
+    settings, stock = StabiliseSettings(method=method, margin=margin), WedgeStock(100, 8.0)
+    result = stabilise(wall.occupied, (posed, row, col), "right", BOOK, stock, settings)
     stable = naive.rests_stably(
         wall.occupied, posed.mask, row, col, col + posed.anchor[0], margin * posed.width_px
     )
@@ -104,49 +114,13 @@ def test_whatever_comes_out_is_a_stable_rigid_copy_inside_the_site(scene, method
 
 @pytest.mark.parametrize(("depth", "held"), [(29, True), (30, True), (31, False), (40, False)])
 def test_a_gap_higher_than_a_wedge_may_be_is_not_taken_for_the_ground(depth, held):
-    occupied = ledge(height=depth, site=(60, 50))
-    trial = bar_on_the_ledge(occupied, PoseBook())
-    stock = WedgeStock(next_id=100, mean_height_px=60.0)
-    settings = StabiliseSettings(method="wedge")
-    result = stabilise(occupied, trial, "left", PoseBook(), stock, settings)
-    assert (result is not None) is held
-    outcome = make_stable(occupied, trial, "left", PoseBook(), stock, settings)
+    occupied, settings = ledge(height=depth, site=(60, 50)), StabiliseSettings(method="wedge")
+    trial = bar_on_the_ledge(occupied)
+    outcome = make_stable(occupied, trial, "left", BOOK, WedgeStock(100, 60.0), settings)
+    assert (outcome.stabilised is not None) is held
     assert outcome.depth == trial[1] + 6 + 30 + 1
 
 
-@repeatable(60)
-@given(on_wall=posed_on_walls(), margin=st.sampled_from([0.0, 0.5, 1.5]))
-def test_support_is_that_of_every_pixel_on_its_own(on_wall, margin):
-    wall, posed, row, col = on_wall
-    support = support_polyline(wall.occupied, posed, row, col)
-    ends = naive.support_ends(wall.occupied, posed.mask, row, col)
-    assert ((support.left_x, support.left_row), (support.right_x, support.right_row)) == ends
-    x_c = col + posed.anchor[0]
-    stable = naive.rests_stably(wall.occupied, posed.mask, row, col, x_c, margin)
-    assert (support.falls(x_c, margin) == 0) == stable
-
-
-@pytest.mark.parametrize(
-    ("x_c", "margin", "falls"),
-    [
-        (1.9, 0.0, -1), (2.0, 0.0, 0), (6.0, 0.0, 0), (6.1, 0.0, 1),
-        (2.9, 1.0, -1), (3.0, 1.0, 0), (5.1, 1.0, 1), (3.9, 3.0, -1), (4.1, 3.0, 1),
-    ],
-)  # fmt: skip
-def test_it_falls_to_the_nearer_end(x_c, margin, falls):
-    assert Support(2, 6, 9, 9).falls(x_c, margin) == falls
-
-
-def test_a_stable_stone_is_left_alone():
-    occupied = ledge()
-    trial = bar_on_the_ledge(occupied, PoseBook(), col=0, length=20)
-    result = rotate_to_rest(occupied, trial, PoseBook(), StabiliseSettings())
-    assert result.pivots == 0
-    assert result.pose == trial
-    assert result.depth == trial[1] + 6 + 1  # the rows of the bar, and the one below
-
-
-@repeatable(60)
 @given(
     scene=stairs(),
     settings=st.sampled_from(
@@ -167,6 +141,146 @@ def test_it_turns_as_a_walk_from_angle_to_angle_does(scene, settings):
 
 
 def test_a_stone_in_the_air_does_not_rest():
-    posed = PoseBook().pose(Stone(7, np.ones((6, 30), bool)), 0.0)
-    result = rotate_to_rest(ledge(), (posed, 3, 10), PoseBook(), StabiliseSettings())
-    assert result.pose is None
+    trial = (BAR, 3, 10)
+    assert rotate_to_rest(ledge(), trial, BOOK, StabiliseSettings()).pose is None
+    assert stabilise(ledge(), trial, "left", BOOK, STOCK, StabiliseSettings()) is None
+
+
+@pytest.mark.parametrize(
+    ("height", "mean", "smallest", "found"),
+    [(2, 8.0, 2, True), (2, 8.0, 3, False), (5, 9.0, 2, False), (5, 10.0, 2, True)],
+)
+def test_smallest_and_largest_size(height, mean, smallest, found):
+    occupied = ledge(height=height)
+    settings = StabiliseSettings(min_wedge_px=smallest)
+    wedge = wedge_under(occupied, bar_on_the_ledge(occupied), 70_000, mean, settings)
+    assert (wedge is not None) is found
+
+
+@pytest.mark.parametrize("side", ["right", "left"])
+@pytest.mark.parametrize(("shelf", "taken"), [((16, 18), (16, 18)), ((15, 18), (16, 18))])
+def test_the_column_at_the_centre_of_mass_is_the_first_that_helps(side, shelf, taken):
+    occupied = ledge()
+    occupied[-2:, slice(*shelf)] = True
+    trial = bar_on_the_ledge(occupied)
+    if side == "left":
+        occupied, trial = mirrored(occupied, trial)
+        taken = (50 - taken[1], 50 - taken[0])
+    wedge = wedge_under(occupied, trial, 70_000, 12.0, StabiliseSettings())
+    assert (wedge.col, wedge.col + wedge.mask.shape[1]) == taken
+    assert holds(occupied, trial, (wedge,))
+
+
+@pytest.mark.parametrize(("mean", "found"), [(12.0, False), (16.0, True)])
+def test_between_sloping_faces_the_whole_wedge_counts(mean, found):
+    """Three pixels of gap, in a wedge of six columns that is eight pixels high."""
+    bottoms = [12] * 4 + [2] * 10 + [4, 5, 6, 7, 8, 9]
+    mask = np.arange(12)[:, None] < bottoms
+    occupied = np.ones((24, 30), bool)
+    for column, bottom in enumerate(bottoms):
+        occupied[: 6 + bottom + (3 if column >= 14 else 0 if column < 4 else 9), column] = False
+    posed = BOOK.pose(Stone(5, mask), 0.0)
+    occupied[:18, 20:] = False
+    settings = StabiliseSettings(margin=0.2)
+    wedge = wedge_under(occupied, (posed, 6, 0), 70_000, mean, settings)
+    assert (wedge is not None) is found
+    assert wedge is None or wedge.mask.shape == (8, 6)
+
+
+def told(outcome):
+    """Everything that an outcome says, comparable."""
+    if outcome is None:
+        return None
+    at = outcome.placement
+    wedges = [(w.id, w.under, w.mask.tobytes(), w.row, w.col) for w in outcome.wedges]
+    return at.posed.mask.tobytes(), at.row, at.col, at.side, at.rotation_moves, wedges
+
+
+def afresh(occupied, trial, settings, mean_height_px=12.0):
+    """Stabilise from the left in the window that reaches down to the ground, wedges from 50 on."""
+    posed, row, col = trial
+    reach = memory_module._reach_px(posed)
+    top, left = max(0, row - reach), max(0, col - reach)
+    window = occupied[top:, left : col + posed.width_px + reach]
+    local = posed, row - top, col - left
+    found = stabilise(window, local, "left", BOOK, WedgeStock(50, mean_height_px), settings)
+    return memory_module._moved(found, top, left, "left", 50)
+
+
+@repeatable(80)
+@given(posed_on_walls())
+def test_on_a_site_within_the_window_it_is_stabilise_itself(scene):
+    wall, posed, row, col = scene
+    settings, trial = StabiliseSettings(), (posed, row, col)
+    memory = StabiliseMemory(BOOK, 12.0, settings)
+    expected = stabilise(wall.occupied, trial, "right", BOOK, WedgeStock(50, 12.0), settings)
+    for _ in range(2):
+        assert told(memory.stabilise(wall.occupied, trial, "right", 50)) == told(expected)
+
+
+@pytest.mark.parametrize(
+    ("method", "max_turn_deg", "mean_height_px"),
+    [("rotation", 15.0, 1.0), ("rotation", 70.0, 1.0), ("wedge", 0.0, 12.0), ("both", 30.0, 70.0)],
+)
+def test_walls_that_differ_far_below_are_told_apart_where_it_matters(
+    method, max_turn_deg, mean_height_px
+):
+    """One memory for all: what it remembers from one wall must hold in the next."""
+    settings = StabiliseSettings(method=method, margin=0.1, max_turn_deg=max_turn_deg)
+    memory = StabiliseMemory(BOOK, mean_height_px, settings)
+
+    @given(walls=high_walls(), posed=st.sampled_from([BAR, BLOCK]), col=st.integers(0, 30))
+    def check(walls, posed, col):
+        row = lowered(walls[0], posed.mask, col)
+        for wall in walls:
+            if row is None or overlaps(wall, posed.mask, row, col):
+                continue
+            trial = (posed, row, col)
+            expected = afresh(wall, trial, settings, mean_height_px)
+            assert told(memory.stabilise(wall, trial, "left", 50)) == told(expected)
+
+    check()
+    assert memory._outcomes.held_bytes > 0  # it did remember
+
+
+def test_the_same_surroundings_elsewhere_are_not_worked_out_again(monkeypatch):
+    worked_out = []
+
+    def counted(*arguments):
+        worked_out.append(make_stable(*arguments))
+        return worked_out[-1]
+
+    monkeypatch.setattr(memory_module, "make_stable", counted)
+    memory = StabiliseMemory(BOOK, 12.0, StabiliseSettings(method="wedge"))
+    found = []
+    for offset, col, side, wedge_id in ((60, 62, "left", 90), (100, 102, "right", 95)):
+        site = np.roll(ledge(site=(24, 200)), offset, axis=1)
+        found.append(memory.stabilise(site, (BAR, 14, col), side, wedge_id))
+    assert len(worked_out) == 1
+    here, there = found
+    assert there.placement.col - here.placement.col == 40
+    assert (here.placement.side, there.placement.side) == ("left", "right")
+    assert there.wedges[0].col - here.wedges[0].col == 40
+    assert (here.wedges[0].id, there.wedges[0].id) == (90, 95)
+    another = np.roll(ledge(site=(24, 200)), 101, axis=1)
+    memory.stabilise(another, (BAR, 14, 102), "right", 95)
+    assert len(worked_out) == 2, "another ledge is another scene"
+
+
+def test_the_place_in_a_window_that_is_cut_off_at_the_ends_matters():
+    site, settings = ledge(site=(24, 40)), StabiliseSettings(method="wedge")
+    memory = StabiliseMemory(BOOK, 12.0, settings)
+    for col in (2, 4, 2, 6):
+        trial = (BAR, 14, col)
+        expected = afresh(site, trial, settings)
+        assert told(memory.stabilise(site, trial, "left", 50)) == told(expected)
+
+
+def test_a_stone_balanced_on_a_point_is_wedged_on_both_sides_with_ids_in_a_row():
+    """With a margin, a support too narrow for it must be widened to both sides."""
+    pillar = np.zeros((24, 50), bool)
+    pillar[20:, 16:18] = True
+    settings = StabiliseSettings(method="wedge", margin=0.1)
+    found = StabiliseMemory(BOOK, 12.0, settings).stabilise(pillar, (BAR, 14, 2), "left", 70)
+    assert [wedge.id for wedge in found.wedges] == [70, 71]
+    assert holds(pillar, (BAR, 14, 2), found.wedges, 0.1)

@@ -5,13 +5,11 @@ from itertools import pairwise
 
 import numpy as np
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
 from drystone.contacts.given import model_from_json
 from drystone.statics.limit import lateral_resistance
+from drystone.statics.model import GROUND, RigidBlockModel
 from tests.polygons import box_of
-
-Labels = NDArray[np.uint32]
 
 JAMS = {
     "pier": st.floats(0.6, 3.0),
@@ -19,6 +17,7 @@ JAMS = {
     "gap": st.floats(0.4, 1.5),
     "mu": st.sampled_from([0.4, 0.58, 0.84]),
     "covered": st.booleans(),
+    "unit": st.sampled_from([1.0, 1e-3, 1e3]),
 }
 """What :func:`between_piers` is given."""
 
@@ -74,12 +73,12 @@ def brick_model(courses, bricks, height, mu):
     return boxes(*rows, mu=mu)
 
 
-def between_piers(pier, height, gap, mu, *, covered=False):
+def between_piers(pier=1.0, height=4.0, gap=1.0, mu=0.58, *, covered=False, unit=1.0):
     """A brick, 3, between two piers that stand free; a slab, 4, may cover them."""
     rows = [[0, 0, pier, height], [pier + gap, 0, pier, height], [pier, 1, gap, 1]]
     if covered:
         rows.append([0, height, 2 * pier + gap, 1])
-    return boxes(*rows, mu=mu)
+    return boxes(*(np.array(rows) * unit), mu=mu)
 
 
 def slot(left, right, mu):
@@ -89,7 +88,7 @@ def slot(left, right, mu):
         [[0, 1], [1, 1], [1 + right, 2], [left, 2]],
         [[1, 1], [3, 1], [3, 2], [1 + right, 2]],
     )
-    return _with_one_free(outlines, mu)
+    return with_one_free(outlines, mu)
 
 
 def under_a_roof(slope_deg, mu):
@@ -100,12 +99,12 @@ def under_a_roof(slope_deg, mu):
         [[-1, 2], [-1, 1], [1, 1], [1, 2], [1 - lean, 3], [lean - 1, 3]],
         [[1, 2], [3, 2], [3, 3], [1 - lean, 3]],
     )
-    return _with_one_free(outlines, mu)
+    return with_one_free(outlines, mu)
 
 
-def _with_one_free(outlines, mu):
+def with_one_free(outlines, mu, free=2):
     blocks = [
-        {"id": i, "polygon": corners, "fixed": i != 2} for i, corners in enumerate(outlines, 1)
+        {"id": i, "polygon": corners, "fixed": i != free} for i, corners in enumerate(outlines, 1)
     ]
     return model_from_json({"blocks": blocks, "mu": mu})
 
@@ -118,7 +117,32 @@ def irregular(seed, count, width_px, height_px):
     return (distance.argmin(axis=-1) + 1).astype(np.uint32)
 
 
+def empty(mu=0.58):
+    return RigidBlockModel((), (), mu)
+
+
+def with_block(built, *blocks, whole):
+    """The model with more blocks of a whole wall: a stone, or a stone and its wedge."""
+    new = {block.id for block in blocks}
+    there = {GROUND, *new, *(b.id for b in built.blocks)}
+    touching = [i for i in whole.interfaces if new & {i.block, i.other}]
+    return built.with_added(blocks, tuple(i for i in touching if {i.block, i.other} <= there))
+
+
+def told(interfaces):
+    """What interfaces say, to compare."""
+    return [
+        (i.block, i.other, [tuple(point) for point in i.points.tolist()], i.normal)
+        for i in interfaces
+    ]
+
+
+def alphas(model, **how):
+    """Both ends of the resistance of a wall."""
+    both = lateral_resistance(model, **how)
+    return both.left.alpha, both.right.alpha
+
+
 def limit_load(model, direction, loads=None, **how):
     """One direction of the resistance of a wall."""
-    both = lateral_resistance(model, loads, **how)
-    return both.left if direction == "left" else both.right
+    return getattr(lateral_resistance(model, loads, **how), direction)

@@ -1,3 +1,5 @@
+"""Wedges are what a mason would cut, and outlines those of the pixels, whatever made them."""
+
 from dataclasses import replace
 
 import numpy as np
@@ -8,13 +10,30 @@ from hypothesis import strategies as st
 
 from drystone.contacts.settled import PlacedPolygons, model_of_outlines
 from drystone.kernels.polygons import no_polygons
+from drystone.model import stone as stone_module
+from drystone.model.outline import stone_outline
 from drystone.model.outlines import Outlines
 from drystone.model.plan import WedgeStep
 from drystone.model.site import Site
+from drystone.model.stone import Stone
+from drystone.search.plan_wall import plan_wall
+from drystone.settle.rest import placed_outline
 from drystone.settle.wedge import WedgeLimits
-from drystone.verify.pieces import check_settled_wedge, lies_under, swept_upwards
+from drystone.verify.check import check_plan
+from drystone.verify.pieces import (
+    check_outline,
+    check_settled_wedge,
+    lies_under,
+    rim_px,
+    swept_upwards,
+)
+from tests.naive import outline as naive
+from tests.planner.scenes import greedy, stones_of_masks
 from tests.polygons import box, simple_polygons
-from tests.strategies import repeatable
+from tests.strategies import blobs, holed, masks, repeatable
+from tests.verify.exact_examples import exact_example
+from tests.verify.examples import SLAB as SLAB_ID
+from tests.verify.tampering import codes, step_of
 
 STEP = WedgeStep(3, 9, 7, (), None, None)
 LIMITS = WedgeLimits(least_thickness=1.0, greatest_height=6.0, greatest_area=30.0)
@@ -31,14 +50,13 @@ def model(wedge, *more):
 def found(wedge, *more, **limits):
     blocks = model(wedge, *more)
     wall = no_polygons().added([box(0, 0.01, 5, 8), box(10, 0.01, 15, 5), SLAB, wedge])
-    problems = check_settled_wedge(
-        STEP, wedge, blocks, SLAB, wall, WIDTH, replace(LIMITS, **limits)
-    )
+    limits = replace(LIMITS, **limits)
+    problems = check_settled_wedge(STEP, wedge, blocks, SLAB, wall, WIDTH, limits)
     assert all(problem.step == 3 for problem in problems)
     return [f"{problem.code} {problem.message}" for problem in problems]
 
 
-def test_wedge_must_touch_its_stone_from_below():
+def test_wedge_must_touch_its_stone_from_below_and_stand_on_something():
     assert found(box(11, 5.01, 14, 8.0)) == []
     assert found(box(11, 5.01, 14, 7.85)) == ["E223 wedge 9 does not touch stone 7 from below."]
     # It stands on the stone that it should hold, and at its side.
@@ -46,9 +64,6 @@ def test_wedge_must_touch_its_stone_from_below():
     assert "does not touch" in holds
     assert "stands on nothing" in stands
     assert "does not touch" in found(box(15.05, 0, 18, 9))[0]
-
-
-def test_wedge_must_stand_on_something():
     assert found(box(11, 5.2, 14, 8.0)) == ["E223 wedge 9 stands on nothing."]
     on_ground = found(box(5.5, 0.01, 9.5, 8.0), greatest_height=9, greatest_area=99)
     assert [line[:4] for line in on_ground] == ["E224"]
@@ -67,12 +82,9 @@ def test_wedge_is_one_that_a_mason_would_cut():
     )
     # Rounding to the grid is no fault.
     assert found(box(11, 5.01, 13.999995, 7.999995)) == []
-
-
-def test_wedge_at_the_end_of_the_wall_has_something_beside_it():
-    wedge = box(11, 5.01, 14, 8.0)
-    assert found(wedge, room_px=5.0) == []
-    (line,) = found(wedge, room_px=5.1)
+    # At the end of the wall it has something beside it.
+    assert found(box(11, 5.01, 14, 8.0), room_px=5.0) == []
+    (line,) = found(box(11, 5.01, 14, 8.0), room_px=5.1)
     assert line.endswith("(source px): nothing beside it at the end of the wall.")
 
 
@@ -96,9 +108,8 @@ def test_sweep_is_everything_above_the_lowest_points(corners, seed):
         assert near or swept.contains(shapely.Point(x, y)) == ray.intersects(polygon)
 
 
-@pytest.mark.parametrize(
-    ("earlier", "expected"),
-    [
+def test_block_is_buried_by_what_is_wide_enough_above_it():
+    for earlier, expected in (
         (box(2, 12, 8, 16), True),
         (box(2, -9, 8, -0.01), False),  # it stands on it
         (box(-5, -9, 15, 0.04), False),  # as deep in its bed as it may be
@@ -109,13 +120,11 @@ def test_sweep_is_everything_above_the_lowest_points(corners, seed):
         (box(9.1, 12, 19, 16), False),
         (box(8.9, 12, 19, 16), True),
         (np.array([[4.0, 20.0], [9.0, 21.0], [3.0, 25.0]]), True),
-    ],
-)
-def test_block_is_buried_by_what_is_wide_enough_above_it(earlier, expected):
-    block = box(0, 0, 10, 10)
-    assert lies_under(block, placed(earlier), 1.0) is expected
-    # Others that are in nobody's way change nothing.
-    assert lies_under(block, placed(box(0, -5, 10, -0.01), earlier), 1.0) is expected
+    ):
+        block = box(0, 0, 10, 10)
+        assert lies_under(block, placed(earlier), 1.0) is expected
+        # Others that are in nobody's way change nothing.
+        assert lies_under(block, placed(box(0, -5, 10, -0.01), earlier), 1.0) is expected
 
 
 def test_hook_over_what_is_there_can_be_lowered_and_under_it_cannot():
@@ -124,3 +133,93 @@ def test_hook_over_what_is_there_can_be_lowered_and_under_it_cannot():
     clamp = np.array([[0, 0], [10, 0], [10, 2], [2, 2], [2, 6], [10, 6], [10, 8], [0, 8]], float)
     assert lies_under(clamp, placed(box(3, 2.1, 20, 5.9)), 0.5)
     assert not lies_under(clamp, placed(), 0.5)
+
+
+STONE_STEP = step_of(exact_example().plan, SLAB_ID)
+
+
+def problems(mask, outline, angle_deg=0.0):
+    """What is said of an outline of some pixels, about their centroid, at some place."""
+    at = np.array([31.5, 12.25])
+    step = replace(STONE_STEP, angle_deg=angle_deg)
+    corners = placed_outline(outline, angle_deg, *at.tolist())
+    return [p.message for p in check_outline(step, Stone(SLAB_ID, mask), at, corners, 0.35)]
+
+
+@repeatable(60)
+@given(mask=masks(max_px=9), holey=holed(), angle_deg=st.floats(-180, 180))
+def test_the_rim_is_around_the_pixels_and_outlines_of_stones_are_near_it(mask, holey, angle_deg):
+    slow = {(point.x, point.y) for point in naive.rim(mask)}
+    found = [tuple(point) for point in rim_px(naive.filled(mask)).tolist()]
+    assert len(found) == len(slow)
+    assert set(found) == slow
+    assert problems(holey, Stone(1, holey).outline, angle_deg) == []
+
+
+@repeatable(40)
+@given(
+    mask=st.one_of(holed(), blobs(min_px=10, max_px=40)),
+    angle_deg=st.floats(-180, 180),
+    factor=st.sampled_from([0.5, 0.866, 0.98, 0.999, 1.001, 1.2]),
+)
+def test_a_scaled_outline_is_named(mask, angle_deg, factor):
+    """Also one that stays within the tolerance of every pixel."""
+    (*_, said) = problems(mask, Stone(1, mask).outline * factor, angle_deg)
+    assert f"has {factor**2:.6g} times the area that was read" in said
+
+
+def test_an_outline_beside_its_pixels_or_of_another_shape_is_named():
+    brick, slim = np.ones((12, 20), bool), np.ones((10, 24), bool)
+    outline = Stone(1, brick).outline
+    for shift in ((0.9, 0.0), (-0.9, 0.0), (0.0, 0.9), (0.0, -0.9)):
+        (said,) = problems(brick, outline + shift)
+        assert "is 0.9 source px from the rim that was read; 0.5 are allowed" in said
+        assert problems(brick, outline + 0.5 * np.array(shift)) == []
+    assert len(problems(slim, outline)) == 1  # of the same area
+
+
+def test_check_does_not_take_the_word_of_whoever_reads_outlines(monkeypatch):
+    for factor, named in ((1.0, False), (0.97, True), (1.03, True)):
+        monkeypatch.setattr(
+            stone_module, "stone_outline", lambda *of, k=factor: k * stone_outline(*of)
+        )
+        made = exact_example.__wrapped__()  # anew, not the one that is kept
+        assert ("E240" in codes(check_plan(made.plan, made.stones))) is named
+
+
+def ring(outer, inner):
+    y, x = np.mgrid[: 2 * int(outer) + 1, : 2 * int(outer) + 1] - outer
+    return (np.hypot(x, y) <= outer) & (np.hypot(x, y) >= inner)
+
+
+def planned(stones, width, height):
+    careless = greedy({"settle": {"trials": 0}})  # discs roll
+    return plan_wall(stones, width, height, seed=1, settings=careless, scale=1.0)
+
+
+def test_frames_are_laid_as_if_they_were_filled():
+    solid, frame = np.ones((40, 40), bool), np.ones((40, 40), bool)
+    frame[10:30, 10:30] = False
+    kept, whole = (
+        planned(stones_of_masks(dict.fromkeys(range(1, 5), mask)), 160, 40)
+        for mask in (frame, solid)
+    )
+    assert len(kept.plan.steps) == 4
+    corners = (result.wall.exact.polygons.corners for result in (kept, whole))
+    np.testing.assert_array_equal(*corners)
+    mine, filled = kept.metrics, whole.metrics
+    assert mine.F_SF == pytest.approx(0.75 * filled.F_SF)
+    assert (mine.alpha_left, mine.F_LR) == (filled.alpha_left, filled.F_LR)
+
+
+def test_rings_among_discs_and_bricks_do_not_overlap():
+    shapes = [ring(22, 9)] * 5 + [ring(6.9, 0)] * 5 + [np.ones((20, 35), bool)] * 5
+    stones = stones_of_masks(dict(enumerate(shapes, 1)))
+    result = planned(stones, 180, 90)
+    placed = {step.stone for step in result.plan.stone_steps}
+    assert len(placed) >= 9
+    assert placed & {1, 2, 3, 4, 5}
+    report = check_plan(result.plan, stones, wall_labels=result.wall.labels)
+    assert report.problems == ()
+    assert report.overlap_depth < 0.05
+    assert report.area_error < 0.05

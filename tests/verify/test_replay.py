@@ -1,3 +1,5 @@
+"""The wall of a plan is built again from its settings and poses."""
+
 import json
 from dataclasses import replace
 
@@ -13,18 +15,21 @@ from drystone.model.placement import Placement
 from drystone.model.plan import StoneStep
 from drystone.model.site import Site
 from drystone.model.stone import StoneSet
-from drystone.planner.settings import method_settings
+from drystone.planner.settings import METHODS, PlannerSettings, method_settings
 from drystone.poses import PoseBook
 from drystone.search.plan_wall import plan_wall
 from drystone.verify.check import check_plan
+from drystone.verify.lengths import plan_settings
 from drystone.verify.replay import place_stone, rebuild_wall, replay_plan
 from tests.strategies import repeatable, stones
 from tests.verify.exact_examples import exact_example
 from tests.verify.examples import SLAB, WEDGE, example
 from tests.verify.tampering import changed, moved, reshaped
 
-ROUNDING_PX = 1e-9
-"""Of lengths that were in metres."""
+
+def assert_near(found, expected):
+    """They are equal but for the rounding of lengths that were in metres."""
+    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-9)
 
 
 def read_again(plan):
@@ -44,10 +49,9 @@ def test_wall_is_rebuilt_to_the_pixel(make, scale, px_per_m):
     np.testing.assert_array_equal(mine.mask, its.mask)
     assert (mine.corners is None) == (make is example)
     if make is exact_example:
-        np.testing.assert_allclose(mine.corners, its.corners, rtol=0, atol=ROUNDING_PX)
+        assert_near(mine.corners, its.corners)
         for one, other in zip(found.placements, made.wall.placements, strict=True):
-            corners = other.settled.corners
-            np.testing.assert_allclose(one.settled.corners, corners, rtol=0, atol=ROUNDING_PX)
+            assert_near(one.settled.corners, other.settled.corners)
 
 
 @repeatable(80)
@@ -110,9 +114,8 @@ def test_wall_of_the_planner_is_rebuilt_and_its_plan_passes():
     np.testing.assert_array_equal(found.labels, labels)
     assert len(found.placements) == len(result.wall.placements) >= 4
     for one, other in zip(found.placements, result.wall.placements, strict=True):
-        corners = other.settled.corners
-        np.testing.assert_allclose(one.settled.corners, corners, rtol=0, atol=ROUNDING_PX)
-        np.testing.assert_allclose(one.posed.anchor, other.posed.anchor, rtol=0, atol=ROUNDING_PX)
+        assert_near(one.settled.corners, other.settled.corners)
+        assert_near(one.posed.anchor, other.posed.anchor)
 
 
 def test_wall_that_cannot_be_built_is_refused_with_the_step():
@@ -128,14 +131,17 @@ def test_wall_that_cannot_be_built_is_refused_with_the_step():
         assert caught.value.where == where
 
 
-@pytest.mark.parametrize(
-    ("right", "expected"), [(84.48, []), (84.52, []), (84.78, []), (84.8, ["E220"])]
-)
-def test_the_outline_decides_whether_a_stone_is_in_the_wall(right, expected):
-    # A wall of 84.49 px has 84 columns; a stone may fill half of the next one, and .3 px more.
+def test_the_outline_decides_whether_a_stone_is_in_the_wall():
     made = exact_example()
-    plan = moved(replace(made.plan, width=84.49), 300, right - 84, 0)
-    assert [p.code for p in replay_plan(plan, made.stones).problems] == expected
+    plans = [
+        # A wall of 84.49 px has 84 columns; a stone may fill half of the next one, and .3 px more.
+        (moved(replace(made.plan, width=84.49), 300, right - 84, 0), codes)
+        for right, codes in ((84.48, []), (84.52, []), (84.78, []), (84.8, ["E220"]))
+    ]
+    # What is huge is refused before it is drawn.
+    huge = reshaped(made.plan, lambda w: w * 1e12), changed(made.plan, 3, centroid=(1e300, 10.0))
+    for plan, codes in (*plans, *((plan, ["E220"]) for plan in huge)):
+        assert [p.code for p in replay_plan(plan, made.stones).problems] == codes
 
 
 def test_wedge_may_fill_no_pixel_and_is_a_block_nevertheless():
@@ -144,14 +150,44 @@ def test_wedge_may_fill_no_pixel_and_is_a_block_nevertheless():
     replay = replay_plan(read_again(made.plan), made.stones)
     assert replay.problems == ()
     np.testing.assert_array_equal(replay.labels, made.wall.labels)
-    (wedge,) = replay.wall.wedges
-    assert wedge.mask.size == 0
+    assert [wedge.mask.size for wedge in replay.wall.wedges] == [0]
     # What a wedge may be does not depend on the working px.
     assert check_plan(made.plan, made.stones, wall_labels=made.wall.labels).ok
 
 
-def test_wedge_of_huge_size_is_refused_before_it_is_drawn():
-    made = exact_example()
-    wedge = reshaped(made.plan, lambda w: w * 1e12)
-    for plan in (wedge, changed(made.plan, 3, centroid=(1e300, 10.0))):
-        assert [p.code for p in replay_plan(plan, made.stones).problems] == ["E220"]
+def found(settings, method="best"):
+    whole = METHODS.get(method, PlannerSettings()).as_dict() | settings
+    return plan_settings(replace(example().plan, method=method, settings=whole))
+
+
+@pytest.mark.parametrize("method", ["paper", "best"])
+def test_a_setting_out_of_range_is_the_one_of_the_plans_method(method):
+    settings, (problem,) = found({"mu": -3.0, "vary": 0.1}, method)
+    assert settings == replace(METHODS[method], vary=0.1)
+    assert problem.code == "E217"
+    assert "mu must be in (0, 1e+06], not -3.0" in problem.message
+    assert f"Used instead, of the method {method!r}: mu = 0.58." in problem.message
+    assert problem.message.endswith("The others are those of the plan.")
+    assert found({"mu": 0.6}, method) == (replace(METHODS[method], mu=0.6), [])
+    # Of a method that is not known the default is used.
+    settings, (problem,) = found({"orientations": "north"}, "custom")
+    assert settings == PlannerSettings()
+    assert "Used instead, the package's own: orientations = 'quarter'." in problem.message
+
+
+def test_unknown_ones_are_left_out_and_wrong_groups_named():
+    stop = {"filling": 0.9, "wonder": 1}
+    settings, (problem,) = found({"wings": 2, "stop": stop, "score": 3})
+    assert settings == METHODS["best"].updated({"stop": {"filling": 0.9}})
+    assert "Used instead, of the method 'best': score. " in problem.message
+    assert "Left out: stop.wonder, wings." in problem.message
+
+
+def test_those_that_need_each_other_are_kept_and_what_is_not_said_is_the_default():
+    policy = {"selection_rule": "towers", "search": {"budget": 1}, "mu": -1.0}
+    settings, _ = found(policy)
+    assert (settings.selection_rule, settings.search.budget) == ("towers", 1)
+    plan = replace(example().plan, method="best", settings={"search": {"budget": 1}, "mu": -1.0})
+    settings, _ = plan_settings(plan)
+    assert settings == PlannerSettings().updated({"search": {"budget": 1}})
+    assert settings.geometry != METHODS["best"].geometry

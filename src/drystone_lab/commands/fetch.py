@@ -15,12 +15,9 @@ def run(arguments: argparse.Namespace) -> ExitCode:
         return ExitCode.DONE
     unknown = [name for name in arguments.sets if name not in SETS]
     if unknown or not arguments.sets:
-        raise UsageError(
-            "E138",
-            f"there is no set {unknown[0]!r}." if unknown else "no set is named.",
-            where="fetch",
-            cure=f"Name {' or '.join(SETS)}; `drystone fetch --list` says what they are.",
-        )
+        what = f"there is no set {unknown[0]!r}." if unknown else "no set is named."
+        cure = f"Name {' or '.join(SETS)}; `drystone fetch --list` says what they are."
+        raise UsageError("E138", what, where="fetch", cure=cure)
     names = list(dict.fromkeys(arguments.sets))
     folder = destination(arguments.output)
     fetched = {name: fetch_set(SETS[name], folder, address=RAW) for name in names}

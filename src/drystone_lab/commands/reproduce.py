@@ -70,12 +70,9 @@ def _names(arguments: argparse.Namespace) -> tuple[str, ...]:
     if not arguments.names or arguments.output is None:
         absent = "no folder to write to" if arguments.names else "nothing to make"
         names = " ".join(arguments.names) or "fig5"
-        raise UsageError(
-            "E138",
-            f"{absent} is named.",
-            where="reproduce",
-            cure=f"Write `drystone reproduce {names} -o DIR`; --list shows all names.",
-        )
+        what = f"{absent} is named."
+        cure = f"Write `drystone reproduce {names} -o DIR`; --list shows all names."
+        raise UsageError("E138", what, where="reproduce", cure=cure)
     asked = {name for each in arguments.names for name in item_names(each)}
     return tuple(name for name in ITEMS if name in asked)
 

@@ -39,13 +39,6 @@ def name_axes(ax: Axes, across: str, up: str) -> None:
     ax.tick_params(labelsize=7)
 
 
-def figure_of(ax: Axes) -> Figure:
-    """Return the figure whose axes these are."""
-    figure = ax.get_figure(root=True)
-    assert figure is not None  # noqa: S101 - it was made for the axes
-    return figure
-
-
 def panel_sheet(
     count: int, columns: int, panel_in: tuple[float, float], title: str = ""
 ) -> tuple[Figure, list[Axes]]:

@@ -95,11 +95,9 @@ COLUMNS = tuple(field.name for field in fields(KeptRun))
 def kept_runs(folder: Path) -> tuple[KeptRun, ...]:
     """Return the runs of a store, none where there is none; E401 for another table."""
     path = folder / CSV
-    refused = InputError(
-        "E401",
-        "this is not a table of runs that can be used.",
-        cure="Move it away; runs whose plans are kept beside it are not done again.",
-    )
+    what = "this is not a table of runs that can be used."
+    cure = "Move it away; runs whose plans are kept beside it are not done again."
+    refused = InputError("E401", what, cure=cure)
     return tuple(read_rows(path, COLUMNS, _read, refused)) if path.is_file() else ()
 
 

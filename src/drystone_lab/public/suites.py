@@ -128,10 +128,7 @@ def flat_changes(settings: Mapping[str, Any], where: str) -> Changes:
     """
     for name in ("selection_rule", "ban", "pin"):
         if name in settings:
-            raise UsageError(
-                "E138",
-                f"{name} cannot be the same for all methods and walls.",
-                where=where,
-                cure="Leave it out; --policy names who chooses the stones.",
-            )
+            what = f"{name} cannot be the same for all methods and walls."
+            cure = "Leave it out; --policy names who chooses the stones."
+            raise UsageError("E138", what, where=where, cure=cure)
     return flat(settings)

@@ -20,7 +20,7 @@ from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LimitResult, LimitStatus
 from drystone_lab.paired import median_of
-from drystone_lab.pictures.charts import figure_of, group_panels
+from drystone_lab.pictures.charts import group_panels
 from drystone_lab.pictures.walls import Panel, sheet_of, wall_aspect
 from drystone_lab.reproduce import cells
 from drystone_lab.reproduce.cells import rounded
@@ -95,7 +95,7 @@ def _pictures(case: BaseCase) -> Iterator[ItemFigure]:
             loose = rule != "associative"
             name = f"fig15_{result.direction}{'_coulomb' * loose}"
             about = (result.direction, "no dilatancy" if loose else rule)
-            yield ItemFigure(name, figure_of(ax), about)
+            yield ItemFigure(name, ax.figure, about)
     metrics: dict[str, dict[str, Sequence[float | None]]] = {
         "alpha / mu": {side: case.over_mu(side) for side in ALPHAS}
     }

@@ -38,12 +38,8 @@ def request_of(*, quick: bool, seed: int, data: Path | None) -> dict[str, Any]:
     Published are the files that are there: some items leave out rows whose stones are not.
     """
     files = [file.name for each in SETS.values() for file in each.files]
-    return {
-        "version": version("drystone"),
-        "quick": quick,
-        "seed": seed,
-        "published": [name for name in files if data is not None and (data / name).is_file()],
-    }
+    there = [name for name in files if data is not None and (data / name).is_file()]
+    return {"version": version("drystone"), "quick": quick, "seed": seed, "published": there}
 
 
 def is_met(request: Mapping[str, Any], made: Mapping[str, Any]) -> bool:
@@ -101,12 +97,9 @@ class ReportFolder:
         self.path = path
         path.mkdir(parents=True, exist_ok=True)
         if _read(path / MARK, MARK_SCHEMA) is None and has_files(path):
-            raise UsageError(
-                "E129",
-                "the folder is not empty, and it is none that `drystone reproduce` wrote.",
-                where=str(path),
-                cure="Choose another with -o; nothing in it was touched.",
-            )
+            what = "the folder is not empty, and it is none that `drystone reproduce` wrote."
+            cure = "Choose another with -o; nothing in it was touched."
+            raise UsageError("E129", what, where=str(path), cure=cure)
         self._write_misses(self.misses)
 
     @property

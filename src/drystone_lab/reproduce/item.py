@@ -6,7 +6,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
-from matplotlib.figure import Figure
+from matplotlib.figure import Figure, SubFigure
 
 from drystone.model.wall import Wall
 from drystone.selection.policies.table1 import MARKS
@@ -57,7 +57,7 @@ class ItemFigure(NamedTuple):
     """A picture; written as NAME.png and NAME.svg."""
 
     name: str
-    figure: Figure
+    figure: Figure | SubFigure
     # What its caption is formatted with, that of the longest key with which its name begins; None
     # for what the study found.  Of a finished item the caption itself
     about: Any = None

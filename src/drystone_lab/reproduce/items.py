@@ -36,12 +36,9 @@ def item_names(asked: str) -> tuple[str, ...]:
         return tuple(ITEMS)
     name = ALSO.get(asked, asked)
     if name not in ITEMS:
-        raise UsageError(
-            "E138",
-            f"the paper has no {asked!r} that can be made again.",
-            where="reproduce",
-            cure=f"Name one of {', '.join(ITEMS)}, or all; `drystone reproduce --list` explains.",
-        )
+        what = f"the paper has no {asked!r} that can be made again."
+        cure = f"Name one of {', '.join(ITEMS)}, or all; `drystone reproduce --list` explains."
+        raise UsageError("E138", what, where="reproduce", cure=cure)
     return (name,)
 
 

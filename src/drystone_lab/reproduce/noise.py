@@ -1,6 +1,6 @@
 """Figs. 22 to 24: polygons of eight noise levels; Fig. 25: orientations in steps (§5.3)."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from itertools import cycle
 from pathlib import Path
 from statistics import median
@@ -15,8 +15,8 @@ from drystone.model.wall import Labels
 from drystone.statics.limit import lateral_resistance
 from drystone_lab.pictures import charts
 from drystone_lab.pictures.walls import plot_walls
-from drystone_lab.reproduce import cells, study
-from drystone_lab.reproduce.cells import LEVEL, figures_of, metric_cells, rounded, trend
+from drystone_lab.reproduce import study
+from drystone_lab.reproduce.cells import LEVEL, figures_of, rounded, trend
 from drystone_lab.reproduce.item import Claimed, ItemFigure, PaperItem, Rows
 from drystone_lab.reproduce.study import Study, StudyWalls, Trials, each_wall, medians
 from drystone_lab.runs.outcome import RunOutcome
@@ -201,19 +201,8 @@ def _references(levels: NoiseLevels) -> Rows:
         yield level.noise, of.stones, *map(rounded, (of.F_SF, of.F_AV, of.F_AH, *wall.resistances))
 
 
-def _level_rows(levels: NoiseLevels) -> Rows:
-    rows = medians(lambda one: (one.wall.number, one.wall.said, one.way))
-    return (row for level in levels for row in rows(level.built))
-
-
-def _wall_rows(levels: NoiseLevels) -> Rows:
-    rows = each_wall(
-        lambda one, spec, outcome: (
-            one.wall.number, one.wall.said, one.way, spec.seed, *cells.placed_of(outcome),
-            *metric_cells(outcome), is_full(outcome),
-        )
-    )  # fmt: skip
-    return (row for level in levels for row in rows(level.built))
+def _of_all(rows: Callable[[StudyWalls], Rows]) -> Callable[[NoiseLevels], Rows]:
+    return lambda levels: (row for level in levels for row in rows(level.built))
 
 
 def _noise_pictures(levels: NoiseLevels) -> Iterator[ItemFigure]:
@@ -253,7 +242,7 @@ def _scatter(levels: NoiseLevels) -> ItemFigure:
                 fontsize=6.5, arrowprops={"arrowstyle": "-|>", "linewidth": 0.7, "shrinkB": 1.5},
                 gid=f"example-{level.noise}",
             )  # fmt: skip
-    return ItemFigure("fig23", charts.figure_of(ax))
+    return ItemFigure("fig23", ax.figure)
 
 
 def _panel(levels: NoiseLevels, name: str) -> charts.NoiseSeries:
@@ -284,9 +273,18 @@ NOISE = PaperItem(
         then=noise_levels,
     ),
     claims=noise_findings,
-    tables={"levels": _level_rows, "reference": _references, "walls": _wall_rows},
+    tables={
+        "levels": _of_all(medians("number", "said", "way")),
+        "reference": _references,
+        "walls": _of_all(
+            each_wall(
+                "number", "said", "way", "seed", "placed", "stones",
+                extra=lambda outcome: (is_full(outcome),),
+            )
+        ),
+    },
     pictures=_noise_pictures,
-)
+)  # fmt: skip
 
 ORIENTATIONS = ("quarter", "10deg")
 """Setting of each: the four of largest shape factor, and 36."""
@@ -328,13 +326,8 @@ TURNED = PaperItem(
     ),
     claims=turned_findings,
     tables={
-        "sets": medians(lambda one: (one.wall.name, one.way)),
-        "walls": each_wall(
-            lambda one, spec, outcome: (
-                one.wall.name, one.way, spec.seed, outcome.figures["placed"],
-                *metric_cells(outcome),
-            )
-        ),
+        "sets": medians("name", "way"),
+        "walls": each_wall("name", "way", "seed", "placed"),
     },
     pictures=lambda found: (
         study.sheet(

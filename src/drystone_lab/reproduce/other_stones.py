@@ -9,7 +9,7 @@ from typing import NamedTuple
 from scipy.stats import mannwhitneyu
 
 from drystone.model.wall import Wall
-from drystone_lab.pictures.charts import figure_of, plot_two_figures
+from drystone_lab.pictures.charts import plot_two_figures
 from drystone_lab.pictures.walls import plot_walls
 from drystone_lab.reproduce import study
 from drystone_lab.reproduce.cells import LEVEL, figures_of, metric_cells, placed_of
@@ -76,7 +76,7 @@ def _rounded_pictures(found: StudyWalls) -> Iterator[ItemFigure]:
     }
     ax = plot_two_figures(groups, across="F_SF", up="F_AV, %")
     ax.legend(fontsize=7, frameon=False, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2)
-    yield ItemFigure("fig27", figure_of(ax))
+    yield ItemFigure("fig27", ax.figure)
 
 
 ROUNDED = PaperItem(
@@ -88,16 +88,11 @@ ROUNDED = PaperItem(
     ),
     claims=rounded_findings,
     tables={
-        "kinds": medians(lambda one: (one.wall.name, one.wall.said)),
-        "walls": each_wall(
-            lambda one, spec, outcome: (
-                one.wall.name, one.wall.said, spec.seed, *placed_of(outcome),
-                *metric_cells(outcome),
-            )
-        ),
+        "kinds": medians("name", "said"),
+        "walls": each_wall("name", "said", "seed", "placed", "stones"),
     },
     pictures=_rounded_pictures,
-)  # fmt: skip
+)
 
 SIDES: Mapping[str, Changes] = {"one side": (), "two sides": TWO_SIDED}
 
@@ -118,13 +113,6 @@ RUBBLE = Target(
 also shows an opening and wide joints."""
 
 
-def irregular_walls(context: Context) -> StudyWalls:
-    """Build walls from one end and from both; in the full version at two working resolutions."""
-    wall = RUBBLE.here(context.data)
-    walls = (coarser(wall, 0.25), *(() if context.quick else (wall,)))
-    return built(context, walls, SIDES, (context.seed,))
-
-
 def _irregular(found: StudyWalls) -> Rows:
     for one in found:
         outcome = one.outcomes[0]
@@ -138,14 +126,17 @@ def _irregular(found: StudyWalls) -> Rows:
 
 
 IRREGULAR = PaperItem(
-    study=irregular_walls,
+    study=Study(
+        walls=(coarser(RUBBLE, 0.25), RUBBLE), ways=SIDES, seeds=1,
+        quick_walls=(coarser(RUBBLE, 0.25),), quick_seeds=1,
+    ),
     tables={"walls": _irregular},
     pictures=lambda found: [
         study.sheet(
             found, "figB33", 2, lambda one: f"{found.name} at {one.wall.scale:g}, from {one.way}"
         )
     ],
-)
+)  # fmt: skip
 
 OVERLAP = 0.25
 """Of the brick's length, by which head joints of neighbouring courses are apart at least: the

@@ -58,6 +58,10 @@ class Trials:
         """Return the median of a figure over the walls that have it; None when none has."""
         return median_of(self.values(figure))
 
+    def about(self, name: str) -> Cell:
+        """Return the way, or what the set says of itself by an attribute."""
+        return self.way if name == "way" else getattr(self.wall, name)
+
     @property
     def middle(self) -> int:
         """Place of the wall in the middle by filling, the lower one of two."""
@@ -136,18 +140,25 @@ def built(
     return StudyWalls(context, tuple(trials))
 
 
-TrialCells = Callable[[Trials], tuple[Cell, ...]]
-
-
-def medians(key: TrialCells, extra: TrialCells = lambda _: ()) -> Callable[[StudyWalls], Rows]:
-    """Return rows of medians and ranges, one a set and way, between `key` and `extra`."""
-    return lambda found: [(*key(one), *cells.summary(one.outcomes), *extra(one)) for one in found]
+def medians(
+    *about: str, extra: Callable[[Trials], tuple[Cell, ...]] = lambda _: ()
+) -> Callable[[StudyWalls], Rows]:
+    """Return rows of medians and ranges, one a set and way, between what they are and `extra`."""
+    return lambda found: [
+        (*map(one.about, about), *cells.summary(one.outcomes), *extra(one)) for one in found
+    ]
 
 
 def each_wall(
-    row: Callable[[Trials, RunSpec, RunOutcome], tuple[Cell, ...]],
+    *about: str, extra: Callable[[RunOutcome], tuple[Cell, ...]] = lambda _: ()
 ) -> Callable[[StudyWalls], Rows]:
-    """Return a row a wall."""
+    """Return a row a wall: what it is, its seed, figures that are named, the metrics, `extra`."""
+
+    def row(one: Trials, spec: RunSpec, outcome: RunOutcome) -> tuple[Cell, ...]:
+        own = {"seed": spec.seed, **outcome.figures}
+        named = (own[name] if name in own else one.about(name) for name in about)
+        return *named, *cells.metric_cells(outcome), *extra(outcome)
+
     return lambda found: [
         row(one, *run) for one in found for run in zip(one.specs, one.outcomes, strict=True)
     ]

@@ -5,8 +5,8 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from drystone_lab import walls
 from drystone_lab.paired import median_of
-from drystone_lab.pictures.charts import figure_of, group_panels, plot_two_figures
-from drystone_lab.reproduce import cells, study
+from drystone_lab.pictures.charts import group_panels, plot_two_figures
+from drystone_lab.reproduce import study
 from drystone_lab.reproduce.cells import METRICS, rounded
 from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem
 from drystone_lab.reproduce.study import Study, StudyWalls, Trials, medians
@@ -19,10 +19,6 @@ COARSE = (coarser(R, 0.1), coarser(PR, 0.25))
 BETAS = ("0", "0.5", "0.7", "0.9")
 PAPERS = "0.7"
 """The threshold that the paper found best."""
-
-
-def _named(one: Trials) -> tuple[str, str]:
-    return one.wall.name, one.way
 
 
 def _beta_picture(found: StudyWalls) -> ItemFigure:
@@ -42,7 +38,7 @@ BETA = PaperItem(
         quick_walls=COARSE,
     ),
     tables={
-        "beta": medians(_named),
+        "beta": medians("name", "way"),
         "beta_pairs": study.pairs(PAPERS, [beta for beta in BETAS if beta != PAPERS]),
     },
     pictures=lambda found: [_beta_picture(found)],
@@ -76,7 +72,7 @@ SAMPLING = PaperItem(
     study=Study(walls=(PR,), ways=SAMPLED),
     claims=_sampling_claims,
     tables={
-        "fig16": medians(lambda one: (one.way,), lambda one: (rounded(one.median("candidates")),))
+        "fig16": medians("way", extra=lambda one: (rounded(one.median("candidates")),)),
     },
     pictures=lambda found: (
         study.sheet(found, "fig16", 2, lambda one: one.way),
@@ -107,8 +103,8 @@ def _wedges_picture(group: StudyWalls, number: int) -> ItemFigure:
     }
     # The set is named in the picture itself, as one of them stands in for the paper's.
     across = f"{group.name}: area of wedges, % of the wall"
-    figure = figure_of(plot_two_figures(points, across=across, up="F_SF"))
-    return ItemFigure(f"fig20_{number}", figure, group)
+    ax = plot_two_figures(points, across=across, up="F_SF")
+    return ItemFigure(f"fig20_{number}", ax.figure, group)
 
 
 STABILISATION = PaperItem(
@@ -121,7 +117,9 @@ STABILISATION = PaperItem(
     claims=_stabilised_claims,
     tables={
         "fig20": medians(
-            _named, lambda one: (one.median("wedges"), rounded(median_of(_wedge_share(one))))
+            "name",
+            "way",
+            extra=lambda one: (one.median("wedges"), rounded(median_of(_wedge_share(one)))),
         )
     },
     pictures=lambda found: [
@@ -178,9 +176,7 @@ def named_variants(
 VARIANTS = PaperItem(
     study=named_variants,
     tables={
-        "variants": medians(
-            lambda one: (*_named(one), one.wall.working_px), lambda one: (_whole(one),)
-        ),
+        "variants": medians("name", "way", "working_px", extra=lambda one: (_whole(one),)),
     },
     pictures=lambda found: [
         study.strips(group, f"variants_{number}", ("placed", "F_SF", "F_LR"), lambda one: one.way)
@@ -195,7 +191,7 @@ SIDES: dict[str, Changes] = {ONE: (), TWO: TWO_SIDED}
 BOTH_ENDS = PaperItem(
     study=Study(walls=MASONS, ways=SIDES, quick_walls=COARSE),
     tables={
-        "fig21": medians(_named, lambda one: (rounded(one.median("E_FLUSH")),)),
+        "fig21": medians("name", "way", extra=lambda one: (rounded(one.median("E_FLUSH")),)),
         "fig21_pairs": study.pairs(TWO, (ONE,)),
     },
     pictures=lambda found: (
@@ -232,10 +228,8 @@ ALL_METHODS = PaperItem(
     ),
     tables={
         "figB30_32": study.each_wall(
-            lambda one, _, outcome: (
-                *_named(one), *cells.placed_of(outcome), *cells.metric_cells(outcome),
-                outcome.figures["wedges"], outcome.figures["candidates"],
-            )
+            "name", "way", "placed", "stones",
+            extra=lambda outcome: (outcome.figures["wedges"], outcome.figures["candidates"]),
         )
     },
     pictures=lambda found: [_methods_picture(group) for group in found.by_wall],

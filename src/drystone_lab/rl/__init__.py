@@ -10,12 +10,9 @@ from drystone.errors import UsageError
 try:
     import gymnasium
 except ImportError as error:
-    raise UsageError(
-        "E150",
-        "gymnasium is not installed, and walls for reinforcement learning are its environments.",
-        where="drystone_lab.rl",
-        cure="Install it with `pip install 'drystone[rl]'`.",
-    ) from error
+    what = "gymnasium is not installed, and walls for reinforcement learning are its environments."
+    cure = "Install it with `pip install 'drystone[rl]'`."
+    raise UsageError("E150", what, where="drystone_lab.rl", cure=cure) from error
 
 ENVIRONMENT = "drystone/Wall-v0"
 

@@ -150,12 +150,9 @@ def train(
         new = [one for one in branched if one is not None]
         found += new
         if not found:
-            raise UsageError(
-                "E123",
-                "no stone of these walls has a choice of places.",
-                where="TrainSettings",
-                cure="Train on more walls, or of more stones.",
-            )
+            what = "no stone of these walls has a choice of places."
+            cure = "Train on more walls, or of more stones."
+            raise UsageError("E123", what, where="TrainSettings", cure=cure)
         scale = spread_of(found)
         weights = fitted(found, scale, settings.strength) / scale
         model = ValueModel(tuple(weights.tolist()), {})

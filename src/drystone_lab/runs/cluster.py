@@ -34,12 +34,9 @@ def cluster_at_work(address: str, *, patience_s: float = 5.0) -> Iterator[RunWor
     try:
         distributed = import_module("distributed")
     except ImportError as error:
-        raise UsageError(
-            "E403",
-            "Dask is not installed, and a cluster is asked for.",
-            where=OPTION,
-            cure="Install it with `pip install 'drystone[dask]'`, or use --jobs.",
-        ) from error
+        what = "Dask is not installed, and a cluster is asked for."
+        cure = "Install it with `pip install 'drystone[dask]'`, or use --jobs."
+        raise UsageError("E403", what, where=OPTION, cure=cure) from error
     client = _client(distributed, address, patience_s)
     try:
         check_versions(client)
@@ -113,13 +110,9 @@ def _outcomes(
             except distributed.KilledWorker as error:
                 raise died(spec, "workers, one after the other,") from error
             except CancelledError as error:
-                raise DrystoneError(
-                    "E404",
-                    "the connection to the Dask cluster was lost.",
-                    where=OPTION,
-                    cure="Give the same command again when it is back: the runs that ended are "
-                    "kept.",
-                ) from error
+                what = "the connection to the Dask cluster was lost."
+                cure = "Give the same command again when it is back: the runs that ended are kept."
+                raise DrystoneError("E404", what, where=OPTION, cure=cure) from error
             if outcome.key != spec.key:
                 raise _other_version("a worker that joined the Dask cluster has another drystone.")
             # The cluster would do it again if it lost what somebody still holds.

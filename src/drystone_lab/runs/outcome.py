@@ -114,12 +114,9 @@ class RunStore:
         except FileNotFoundError:
             return None
         except (ValueError, TypeError, KeyError) as error:
-            raise InputError(
-                "E401",
-                "the outcome of a run that is kept here is damaged.",
-                where=str(path),
-                cure="Delete the file: its run is then done again.",
-            ) from error
+            what = "the outcome of a run that is kept here is damaged."
+            cure = "Delete the file: its run is then done again."
+            raise InputError("E401", what, where=str(path), cure=cure) from error
         return RunOutcome(key, figures, plan, times)
 
     def put(self, outcome: RunOutcome) -> None:
@@ -132,13 +129,12 @@ class RunStore:
 
 def died(spec: RunSpec | str, who: str) -> DrystoneError:
     """Return E402: who did a run died at it."""
-    return DrystoneError(
-        "E402",
-        f"the {who} that did this run died, for want of memory for example.",
-        where=str(spec),
-        cure="Give the same command again: the runs that ended are kept. Ask for fewer at once if "
-        "memory ran out.",
+    what = f"the {who} that did this run died, for want of memory for example."
+    cure = (
+        "Give the same command again: the runs that ended are kept. Ask for fewer at once if "
+        "memory ran out."
     )
+    return DrystoneError("E402", what, where=str(spec), cure=cure)
 
 
 def absent_data(absent: Sequence[str], *, known: bool) -> InputError:
@@ -149,13 +145,12 @@ def absent_data(absent: Sequence[str], *, known: bool) -> InputError:
     """
     sets = " ".join(dict.fromkeys(name.split("/")[0] for name in absent))
     why = "are not in the folder of published data" if known else "are not there"
-    return InputError(
-        "E100",
-        f"published stones that this needs {why}.",
-        where=", ".join(absent),
-        cure=f"`drystone fetch {sets}` gets them; or name a folder that has them with --data or "
-        "DRYSTONE_DATA.",
+    what = f"published stones that this needs {why}."
+    cure = (
+        f"`drystone fetch {sets}` gets them; or name a folder that has them with --data or "
+        "DRYSTONE_DATA."
     )
+    return InputError("E100", what, where=", ".join(absent), cure=cure)
 
 
 RunWorker = Callable[[Sequence[RunSpec], Path | None], Iterator[RunOutcome]]

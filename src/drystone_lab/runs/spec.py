@@ -3,7 +3,7 @@
 import hashlib
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any, Literal
@@ -116,10 +116,7 @@ class StoneSource:
 
     def as_dict(self) -> dict[str, Any]:
         """Return what JSON writes."""
-        return {
-            "kind": self.kind, "name": self.name, "seed": self.seed,
-            "settings": dict(self.settings),
-        }  # fmt: skip
+        return asdict(self) | {"settings": dict(self.settings)}
 
 
 def _grey(path: Path) -> NDArray[Any]:

@@ -132,12 +132,9 @@ def work_of(jobs: int | None, dask_address: str | None) -> Iterator[RunWorker]:
     6
     """
     if jobs is not None and dask_address is not None:
-        raise UsageError(
-            "E138",
-            "processes here and a Dask cluster are asked for, and only one of them can work.",
-            where="--jobs, --dask",
-            cure="Give one of the two; a cluster's workers are its own.",
-        )
+        what = "processes here and a Dask cluster are asked for, and only one of them can work."
+        cure = "Give one of the two; a cluster's workers are its own."
+        raise UsageError("E138", what, where="--jobs, --dask", cure=cure)
     here = dask_address is None
     with processes_at_work(jobs or 1) if here else cluster_at_work(str(dask_address)) as work:
         yield work

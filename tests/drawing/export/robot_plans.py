@@ -49,8 +49,8 @@ def assembly(name, px_per_m=PX_PER_M):
 
 
 def write_plan_folder(name, folder):
-    """Write the plan of one of METRIC with the files beside it."""
-    made = _planned(name)
+    """Write the files of a plan as `drystone plan` does, without pictures."""
+    made = planned(name)
     ds.write_plan(made.plan, folder / "plan.json")
     if made.wall.outlines is not None:
         (folder / BLOCKS).write_text(json.dumps(blocks_to_json(made.wall, made.model)))
@@ -60,24 +60,20 @@ def write_plan_folder(name, folder):
 
 @cache
 def source_stones():
-    """Return the stones of all of them."""
+    """Return the stones of all plans."""
     rubble = RubbleSettings(count=9, width_px=110.0, height_px=40.0, courses=2, tilt_deg=14.0)
     return rubble_stones(rubble, np.random.default_rng(4))
 
 
 @cache
-def _planned(name):
-    settings = ds.method_settings("best" if name.startswith("exact") else "paper")
+def planned(name):
+    """Plan one of METRIC: with outlines and a wedge, or on pixels."""
+    exact = name.startswith("exact")
+    settings = ds.method_settings("best" if exact else "paper")
     # So small that it decides nothing: in px and in metres the wedge is the same.
     small = WedgeSettings(thickness=0.01, thickness_mm=1.5)
     search, careless = replace(settings.search, budget=1), SettleSettings(margin=0.2, trials=0)
     settings = replace(settings, search=search, wedge=small, settle=careless)
-    return ds.plan_wall(
-        source_stones(),
-        110.0,
-        40.0,
-        seed=35 if name.startswith("exact") else 3,  # each with a wedge
-        settings=settings,
-        scale=1.0 if name.startswith("exact") else 0.5,
-        px_per_m=PX_PER_M if name.endswith("-m") else None,
-    )
+    scale = {"scale": 1.0 if exact else 0.5, "px_per_m": PX_PER_M if name.endswith("-m") else None}
+    stones, seed = source_stones(), 35 if exact else 3
+    return ds.plan_wall(stones, 110.0, 40.0, seed=seed, settings=settings, **scale)

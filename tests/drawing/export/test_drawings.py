@@ -101,17 +101,6 @@ def test_layers_are_there_and_statics_are_not_shown_at_first(tmp_path):
 SETTINGS = ExportSettings(title="A wall")
 
 
-@pytest.fixture(scope="module")
-def wall():
-    return assembly()
-
-
-@pytest.fixture(scope="module")
-def doc(wall, tmp_path_factory):
-    (path,) = FORMATS["dxf"].write(wall, tmp_path_factory.mktemp("dxf"), SETTINGS)
-    return ezdxf.readfile(path)
-
-
 def on_layer(doc, name, kind="LWPOLYLINE"):
     return list(doc.modelspace().query(f'{kind}[layer=="{name}"]'))
 
@@ -120,7 +109,10 @@ def told(entity):
     return [value for code, value in entity.get_xdata("DRYSTONE") if code != 1001]
 
 
-def test_the_audit_finds_nothing_and_the_unit_is_the_metre_or_none(doc, tmp_path):
+def test_a_dxf_has_no_faults_and_holds_outlines_steps_contacts_and_forces(tmp_path):
+    wall = assembly()
+    (path,) = FORMATS["dxf"].write(wall, tmp_path, SETTINGS)
+    doc = ezdxf.readfile(path)
     audit = doc.audit()
     assert (len(audit.errors), len(audit.fixes)) == (0, 0)
     assert doc.dxfversion == "AC1024"  # R2010
@@ -138,8 +130,6 @@ def test_the_audit_finds_nothing_and_the_unit_is_the_metre_or_none(doc, tmp_path
     words = " ".join(text.dxf.text for text in on_layer(without, "SITE", "TEXT"))
     assert "Not to scale: the unit is 1 px" in words
 
-
-def test_outlines_are_closed_and_those_of_the_plan_with_steps_at_centroids(doc, wall):
     texts = {text.dxf.text: text for text in on_layer(doc, "NUMBERS", "TEXT")}
     assert set(texts) == {str(part.step) for part in wall.parts}
     drawn = {told(e)[0]: e for layer in ("STONES", "WEDGES") for e in on_layer(doc, layer)}
@@ -153,17 +143,12 @@ def test_outlines_are_closed_and_those_of_the_plan_with_steps_at_centroids(doc, 
         assert np.abs(points - part.corners).max() < 1e-9
         _, place, _ = texts[str(part.step)].get_placement()
         assert (place.x, place.y) == pytest.approx(part.centroid)
-
-
-def test_contacts_are_lines_as_long_as_the_interfaces(doc, wall):
     lines = on_layer(doc, "CONTACTS", "LINE")
-    drawn = sum((line.dxf.end - line.dxf.start).magnitude for line in lines)
-    assert drawn == pytest.approx(sum(one.length for one in wall.model.interfaces))
+    lengths = sum((line.dxf.end - line.dxf.start).magnitude for line in lines)
+    assert lengths == pytest.approx(sum(one.length for one in wall.model.interfaces))
     assert len(lines) + len(on_layer(doc, "CONTACTS", "POINT")) == len(wall.model.interfaces)
 
-
-def test_forces_on_the_ground_carry_the_wall(doc, wall):
-    """Upright, the arrows from the ground add up to the weight, to the scale that is said."""
+    # Upright, the arrows from the ground add up to the weight, to the scale that is said.
     for direction, sign in (("LEFT", -1.0), ("RIGHT", 1.0)):
         (note,) = (t.dxf.text for t in on_layer(doc, f"FORCES-{direction}", "TEXT"))
         per_weight = float(note.split("a line of ")[1].split(" m ")[0])
@@ -179,19 +164,17 @@ def test_forces_on_the_ground_carry_the_wall(doc, wall):
         assert weights[0] == pytest.approx(-sign * result.alpha * 7.0, rel=0.04)
 
 
-def test_every_step_is_written_those_of_wedges_above_the_ground():
+def test_a_picture_has_every_step_and_the_shape_of_the_wall_whatever_its_title(tmp_path):
     ax = draw(drawing_of_assembly(assembly(columns=5, rows=3), "A wall"))
     assert sorted(int(text.get_text()) for text in ax.texts) == list(range(1, 17))
+    # Those of wedges are above the ground.
     wedge = next(text for text in ax.texts if text.get_text() == "2")
     assert wedge.get_window_extent().transformed(ax.transData.inverted()).y0 > 0.0
     assert ax.get_xlabel() == "m"
     assert draw(drawing_of_assembly(assembly(px_per_m=None))).get_xlabel() == "px"
-
-
-def test_a_picture_has_the_shape_of_the_wall_whatever_its_title(tmp_path):
-    wall, sizes = assembly(columns=6), []
+    sizes = []
     for title in ("A wall", 300 * "W", "$x_1"):
-        (path,) = FORMATS["png"].write(wall, tmp_path, ExportSettings(title=title))
+        (path,) = FORMATS["png"].write(assembly(columns=6), tmp_path, ExportSettings(title=title))
         with Image.open(path) as image:
             sizes.append(image.size)
             pixels = np.asarray(image.convert("RGB")).astype(int)

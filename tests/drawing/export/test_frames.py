@@ -33,7 +33,7 @@ def spot(part, film):
     return round(row - 0.5), round(column - 0.5)
 
 
-def test_every_part_is_white_then_bright_and_then_stays(tmp_path):
+def test_every_part_is_white_then_bright_and_then_stays_for_steps_that_a_gif_can_have(tmp_path):
     wall = assembly()
     (path,) = FORMATS["gif"].write(wall, tmp_path, SETTINGS)
     assert path.stat().st_size < 200_000
@@ -49,19 +49,7 @@ def test_every_part_is_white_then_bright_and_then_stays(tmp_path):
             seen = "#ffffff" if frame < place else fresh if frame == place else after
             away = np.abs(picture[row, column] / 255 - np.array(rgb(seen)))
             assert away.max() < 0.03, (part.name, frame)
-
-
-def test_tall_walls_keep_their_shape():
-    film = Film(assembly(columns=1, rows=8), 400)
-    width, height = film.size_px
-    assert height <= 0.75 * 400 + 60
-    assert width % 2 == height % 2 == 0
-    corners = np.array(film.view.pixels(np.concatenate([p.corners for p in film.assembly.parts])))
-    assert np.ptp(corners[:, 1]) / np.ptp(corners[:, 0]) == 4.0
-
-
-def test_steps_that_are_too_long_for_a_gif_are_refused(tmp_path):
-    wall = assembly()
+    # Steps that are too long for a GIF are refused.
     longest = ExportSettings(seconds_per_step=LONGEST_S)
     assert tuple(FORMATS["gif"].files(wall, longest)) == ("build.gif",)
     (path,) = FORMATS["gif"].write(wall, tmp_path, longest)
@@ -69,6 +57,13 @@ def test_steps_that_are_too_long_for_a_gif_are_refused(tmp_path):
     for seconds in (656.0, 1e308):
         with pytest.raises(UsageError, match="E138"):
             FORMATS["gif"].files(wall, ExportSettings(seconds_per_step=seconds))
+    # Tall walls keep their shape.
+    film = Film(assembly(columns=1, rows=8), 400)
+    width, height = film.size_px
+    assert height <= 0.75 * 400 + 60
+    assert width % 2 == height % 2 == 0
+    corners = np.array(film.view.pixels(np.concatenate([p.corners for p in film.assembly.parts])))
+    assert np.ptp(corners[:, 1]) / np.ptp(corners[:, 0]) == 4.0
 
 
 def test_the_film_has_every_step_for_its_time(tmp_path):
@@ -95,29 +90,12 @@ def test_the_film_has_every_step_for_its_time(tmp_path):
 PROJECTOR = ExportSettings(projector_px=(800, 600), projector_px_per_m=500.0)
 """The wall is .9 m x .3 m: 450 px x 150 px."""
 
-LINE_PX = 4
 
-
-@pytest.fixture(scope="module")
-def scene(tmp_path_factory):
-    """A wall and its pictures."""
-    wall, folder = assembly(), tmp_path_factory.mktemp("projector")
-    return wall, [picture(path) for path in FORMATS["projector"].write(wall, folder, PROJECTOR)]
-
-
-def picture(path):
-    with Image.open(path) as image:
-        return np.asarray(image).astype(int)
-
-
-def bright_box(image):
-    """Return the box of the brightest px above the strip of words, y up from the lower edge."""
-    rows, columns = np.nonzero(image[: 600 - 70] == 255)
-    return columns.min(), 599 - rows.max(), columns.max(), 599 - rows.min()
-
-
-def test_the_stone_to_be_placed_is_drawn_one_to_one(scene):
-    wall, images = scene
+def test_the_stone_to_be_placed_is_drawn_one_to_one_and_what_stands_is_dim(tmp_path):
+    wall, images = assembly(), []
+    for path in FORMATS["projector"].write(wall, tmp_path, PROJECTOR):
+        with Image.open(path) as image:
+            images.append(np.asarray(image).astype(int))
     assert len(images) == len(wall.parts) + 1
     assert {image.shape for image in images} == {(600, 800)}
     assert min((image == 0).mean() for image in images) > 0.9
@@ -125,23 +103,18 @@ def test_the_stone_to_be_placed_is_drawn_one_to_one(scene):
     for part, image in zip(wall.parts, images[1:], strict=True):
         low, high = part.corners.min(axis=0) * 500, part.corners.max(axis=0) * 500
         expected = (left + low[0], bottom + low[1], left + high[0], bottom + high[1])
-        assert bright_box(image) == pytest.approx(expected, abs=LINE_PX / 2 + 1)
-
-
-def test_what_stands_is_dim_and_what_is_to_come_dark(scene):
-    wall, images = scene
+        # The brightest px above the strip of words, to half a line's width of 4 px.
+        rows, columns = np.nonzero(image[: 600 - 70] == 255)
+        box = columns.min(), 599 - rows.max(), columns.max(), 599 - rows.min()
+        assert box == pytest.approx(expected, abs=3)
+    # The lower edge of a stone lies on the ground, which is drawn always; its right edge does not.
     stone = wall.parts[2]
-    # Its lower edge lies on the ground, which is drawn always; its right edge does not.
     x, y = (stone.corners[1] + stone.corners[2]) / 2 * 500
     row, column = round(600 - 84 - y), round(175 + x)
     around = [int(image[row, column - 2 : column + 3].max()) for image in images]
-    assert around[:3] == [0, 0, 0]
-    assert around[3] == 255
+    assert around[:4] == [0, 0, 0, 255]
     assert around[5:] == [DIM] * 3
-
-
-def test_the_bar_is_as_long_as_it_says(scene):
-    _, images = scene
+    # The bar is as long as it says.
     strip = images[1][600 - 30 :, 400:]
     longest = max(int(run) for row in strip for run in runs(row > 0))
     assert longest == pytest.approx(0.1 * 500, abs=2)

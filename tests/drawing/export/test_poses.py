@@ -33,6 +33,12 @@ def xyz(values):
 def test_pick_and_place_follow_the_formula_of_the_plan(name, tmp_path):
     read, plan = written(name, tmp_path), assembly(name).plan
     unit = PX_PER_M if plan.length_unit == "px" else 1.0
+    assert (read["schema"], read["units"]["length"]) == ("drystone-poses/1", "m")
+    assert read["px_per_m"] == PX_PER_M
+    assert {"W", "P", "S", "pick and place", "approach", "grasp"} <= set(read["frames"])
+    assert read["source"] == {"path": plan.source["path"], "sha256": plan.source["sha256"]}
+    assert read["wall"]["width_m"] == pytest.approx(110 / PX_PER_M)
+    assert read["unused"] == list(plan.unused)
     assert len(read["parts"]) == len(plan.steps)
     for part, step in zip(read["parts"], plan.steps, strict=True):
         assert (part["step"], part["kind"], part["flipped"]) == (step.step, step.kind, False)
@@ -59,7 +65,7 @@ def test_pick_and_place_follow_the_formula_of_the_plan(name, tmp_path):
         assert np.array(part["pick_to_place"]) @ photo == pytest.approx(moved, abs=1e-12)
 
 
-def test_grasps_masses_and_sizes(tmp_path):
+def test_grasps_masses_sizes_and_the_order_of_work(tmp_path):
     read, wall = written("exact", tmp_path), assembly("exact")
     assert (read["density_kg_m3"], read["clearance_m"]) == (2450.0, 0.05)
     assert read["thickness_m"] == THICKNESS_M
@@ -80,10 +86,7 @@ def test_grasps_masses_and_sizes(tmp_path):
         assert found["size_m"]["y"] == held["thickness_m"] == THICKNESS_M
         assert held["width_m"] <= min(found["size_m"]["x"], found["size_m"]["z"]) + 1e-12
         assert found["place"]["approach"]["blocked_m"] * PX_PER_M < 1.0
-
-
-def test_the_order_of_work_can_be_followed(tmp_path):
-    read = written("exact", tmp_path)
+    # The order of work can be followed.
     there, names = {0}, [part["name"] for part in read["parts"]]
     for part in read["parts"]:
         assert part["neighbours"]
@@ -95,17 +98,6 @@ def test_the_order_of_work_can_be_followed(tmp_path):
         waits = bool(part["wedges_after"])
         assert (part["alpha"]["left"] is None) == (part["alpha"]["right"] is None) == waits
     assert [name for part in read["parts"] for name in part["wedges_after"]] == ["wedge_010"]
-
-
-def test_frames_units_and_provenance_are_said(tmp_path):
-    read, plan = written("raster-m", tmp_path), assembly("raster-m").plan
-    assert read["schema"] == "drystone-poses/1"
-    assert read["units"]["length"] == "m"
-    assert read["px_per_m"] == PX_PER_M
-    assert {"W", "P", "S", "pick and place", "approach", "grasp"} <= set(read["frames"])
-    assert read["source"] == {"path": plan.source["path"], "sha256": plan.source["sha256"]}
-    assert read["wall"]["width_m"] == pytest.approx(110 / PX_PER_M)
-    assert read["unused"] == list(plan.unused)
 
 
 def test_stones_begin_above_everything_that_stands():

@@ -7,6 +7,7 @@ from xml.etree import ElementTree as ET
 import compas
 import numpy as np
 import pytest
+import shapely
 import trimesh
 import yaml
 from compas.geometry import Frame, Transformation
@@ -15,8 +16,9 @@ from compas_robots.resources import DefaultMeshLoader
 from scipy.spatial.transform import Rotation
 
 from drystone.drawing.export.formats import FORMATS, ExportSettings
-from drystone.drawing.export.solids import inertia, material, solid_of_part
+from drystone.drawing.export.solids import extruded, inertia, material, solid_of_part
 from drystone.drawing.palette import WEDGE_COLOUR, cluster_colour, rgb
+from drystone.errors import InputError
 from tests.drawing.export.robot_plans import THICKNESS_M, assembly, assert_in_place
 
 SETTINGS = ExportSettings()
@@ -225,3 +227,34 @@ def test_a_urdf_loads_with_mass_centre_and_inertia_of_its_meshes(exact, tmp_path
     colours = {(paint.attrib["name"], paint[0].attrib["rgba"]) for paint in paints}
     assert {material(part)[0] for part in exact.parts} == {name for name, _ in colours}
     assert len(dict(colours)) == len(colours)
+
+
+OUTLINES = {
+    "triangle": [(0, 0), (1, 0), (0, 1)],
+    "collinear corners": [(0, 0), (1, 0), (2, 0), (2, 1), (2, 2), (1, 2), (0, 2), (0, 1)],
+    "hollow": [(0, 0), (4, 0), (4, 3), (2, 0.5), (0, 3)],
+    "comb": [(0, 0), (5, 0), (5, 3), (4, 3), (4, 1), (3, 1), (3, 3), (2, 3), (2, 1), (1, 1), (1, 3),
+             (0, 3)],
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", OUTLINES)
+def test_a_prism_is_closed_and_faces_outward(name):
+    outline = np.array(OUTLINES[name], float)
+    solid = extruded(outline, -1.0, 2.0)
+    mesh = trimesh.Trimesh(solid.vertices, solid.triangles, process=False)
+    assert mesh.is_watertight
+    assert mesh.is_winding_consistent
+    assert len(solid.triangles) == 4 * len(outline) - 4
+    # Inside out, the volume would be negative.
+    assert mesh.volume == pytest.approx(3.0 * shapely.Polygon(outline).area, rel=1e-12)
+    assert mesh.face_normals == pytest.approx(solid.normals, abs=1e-12)
+    front = solid.vertices[solid.triangles][:, :, 1].max(axis=1) == -1.0
+    assert solid.normals[front].tolist() == [[0.0, -1.0, 0.0]] * (len(outline) - 2)
+
+
+def test_an_outline_that_bounds_no_solid_is_refused():
+    crossing, flat = [(0, 0), (2, 2), (2, 0), (0, 2)], [(0, 0), (1, 0), (2, 0)]
+    for corners in (crossing, [(0, 0), (2, 0), (1, 1), (2, 2), (0, 2), (1, 1)], flat):
+        with pytest.raises(InputError, match=r"E180 .*stone_012"):
+            extruded(np.array(corners, float), 0.0, 1.0, "stone_012")

@@ -26,28 +26,9 @@ DPI = 150
 PX_PER_MM = DPI / 25.4
 
 
-@pytest.fixture(scope="module")
-def wall(tmp_path_factory):
-    """Twelve stones and a wedge, 1.2 m x .45 m, with a photograph."""
-    made = assembly(columns=4, rows=3)
-    return replace(made, photo=photograph(made, tmp_path_factory.mktemp("photo") / "photo.png"))
-
-
-@pytest.fixture(scope="module")
-def path(wall, tmp_path_factory):
-    settings = ExportSettings(title="Wall $4, $5", paper_scale=10.0)
-    (written,) = FORMATS["pdf"].write(wall, tmp_path_factory.mktemp("pdf"), settings)
-    return written
-
-
 def texts(path):
     with pypdfium2.PdfDocument(path) as document:
         return [page.get_textpage().get_text_range() for page in document]
-
-
-@pytest.fixture(scope="module")
-def words(path):
-    return texts(path)
 
 
 def rendered(path, page, dpi=DPI):
@@ -55,15 +36,17 @@ def rendered(path, page, dpi=DPI):
         return np.asarray(document[page].render(scale=dpi / 72).to_pil().convert("RGB"), np.int16)
 
 
-def test_pages_are_a4_and_the_first_one_lies(path):
+def test_a_sheet_is_to_scale_says_what_to_do_and_shows_the_photograph(tmp_path):
+    """Twelve stones and a wedge, 1.2 m x .45 m."""
+    made = assembly(columns=4, rows=3)
+    wall = replace(made, photo=photograph(made, tmp_path / "photo.png"))
+    settings = ExportSettings(title="Wall $4, $5", paper_scale=10.0)
+    (path,) = FORMATS["pdf"].write(wall, tmp_path, settings)
     with pypdfium2.PdfDocument(path) as document:
         sizes = [tuple(side * 25.4 / 72 for side in page.get_size()) for page in document]
     # Two pages of 6 lines, and one with the fetch list and the wedge.
     assert np.array(sizes) == pytest.approx(np.array([(297, 210), *[(210, 297)] * 3]), abs=0.1)
-
-
-def test_the_wall_is_drawn_one_to_ten_beside_a_ruler_of_100_mm(wall, path):
-    """The fill of the stones, which reach the frame, is as wide as the wall."""
+    # The fill of the stones, which reach the frame, is as wide as the wall.
     first_page = rendered(path, 0)
     rows, columns = np.nonzero(np.abs(first_page - np.array(STONE)).max(axis=2) <= 3)
     assert (np.ptp(columns) + 1) / PX_PER_MM == pytest.approx(wall.size[0] * 1000 / 10, abs=0.5)
@@ -72,6 +55,38 @@ def test_the_wall_is_drawn_one_to_ten_beside_a_ruler_of_100_mm(wall, path):
     # Not the lines of the title block and the ground, which are longer.
     lengths = {int(run) for row in dark for run in runs(row)}
     assert any(abs(length / PX_PER_MM - 100.0) < 0.5 for length in lengths)
+
+    # Title block, lines and fetch list.
+    first, *lines, last = texts(path)
+    for said in ("Wall $4, $5", "stones.png", "1.20 \N{MULTIPLICATION SIGN} 0.45 m", "1:10",
+                 "drystone 0.1.0", plan_digest(wall.plan), "12, and 2 left over",
+                 "page 1 of 4"):  # fmt: skip
+        assert said in first
+    words = " ".join("\n".join(lines).split())
+    for said in (*(f"stone {part.id}" for part in wall.stones), "turn left 97°", "turn right 45°",
+                 "half turn", "as it lies", "wedge 2: 150 \N{MULTIPLICATION SIGN} 30 mm,",
+                 "on the ground, right of 1"):  # fmt: skip
+        assert said in words
+    # Centroid of the third stone: in the middle of a bevelled brick of 30 cm x 15 cm.
+    assert "\N{RIGHTWARDS ARROW} 75.0 \N{UPWARDS ARROW} 7.5 cm" in words
+    assert {str(part.step) for part in wall.stones} <= {*words.split()}
+    # They lie in rows of four from the top left, in the order of their steps.
+    assert [part.step for part in pages.in_photo_order(wall)] == [1, *range(3, 14)]
+    rows = [line.split() for line in last.splitlines()]
+    listed = [line[0] for line in rows if len(line) == 8 and line[-1] == "cm"]
+    assert listed == [str(step) for step in (1, *range(3, 14))]
+    assert "901, 902" in last
+    assert "Wedges to cut" in last
+
+    # Every line shows the photograph of its stone.
+    image = rendered(path, 1, 100)
+    column = image[:, round(31 / 25.4 * 100) : round(61 / 25.4 * 100)]
+    for place, part in enumerate(list(wall.stones)[:6]):
+        seen = np.abs(column - np.array(photo_colour(part.step))).max(axis=2) <= 6
+        rows, _ = np.nonzero(seen)
+        assert rows.size > 800, part.name
+        middle = (12 + 19 + 34 * (place + 0.5)) / 25.4 * 100
+        assert abs(np.median(rows) - middle) < 6
 
 
 @pytest.mark.parametrize(("columns", "wished", "drawn"), [
@@ -84,45 +99,6 @@ def test_the_next_usual_scale_is_taken_where_the_wall_does_not_fit(columns, wish
     assert scale.denominator == drawn
     assert scale.mm_per_unit == pytest.approx(1000.0 / drawn)
     assert wall.size[0] * scale.mm_per_unit <= pages.DRAWING_MM[0]
-
-
-def test_every_stone_is_said_with_what_to_do(wall, words):
-    lines = "\n".join(words[1:3])
-    for said in (*(f"stone {part.id}" for part in wall.stones), "turn left 97°", "turn right 45°",
-                 "half turn", "as it lies", "wedge 2: 150 \N{MULTIPLICATION SIGN} 30 mm,",
-                 "on the ground, right of 1"):  # fmt: skip
-        assert said in lines
-    # Centroid of the third stone: in the middle of a bevelled brick of 30 cm x 15 cm.
-    assert "\N{RIGHTWARDS ARROW} 75.0 \N{UPWARDS ARROW} 7.5 cm" in " ".join(lines.split())
-    assert {str(part.step) for part in wall.stones} <= {*lines.split()}
-
-
-def test_the_title_block_says_what_the_plan_is(wall, words):
-    for said in ("Wall $4, $5", "stones.png", "1.20 \N{MULTIPLICATION SIGN} 0.45 m", "1:10",
-                 "drystone 0.1.0", plan_digest(wall.plan), "12, and 2 left over",
-                 "page 1 of 4"):  # fmt: skip
-        assert said in words[0]
-
-
-def test_the_fetch_list_is_sorted_as_the_stones_lie(wall, words):
-    # They lie in rows of four from the top left, in the order of their steps.
-    assert [part.step for part in pages.in_photo_order(wall)] == [1, *range(3, 14)]
-    rows = [line.split() for line in words[3].splitlines()]
-    listed = [line[0] for line in rows if len(line) == 8 and line[-1] == "cm"]
-    assert listed == [str(step) for step in (1, *range(3, 14))]
-    assert "901, 902" in words[3]
-    assert "Wedges to cut" in words[3]
-
-
-def test_every_line_shows_the_photograph_of_its_stone(wall, path):
-    image = rendered(path, 1, 100)
-    column = image[:, round(31 / 25.4 * 100) : round(61 / 25.4 * 100)]
-    for place, part in enumerate(list(wall.stones)[:6]):
-        seen = np.abs(column - np.array(photo_colour(part.step))).max(axis=2) <= 6
-        rows, _ = np.nonzero(seen)
-        assert rows.size > 800, part.name
-        middle = (12 + 19 + 34 * (place + 0.5)) / 25.4 * 100
-        assert abs(np.median(rows) - middle) < 6
 
 
 def test_without_a_scale_nothing_is_to_scale(tmp_path):
@@ -156,12 +132,6 @@ def test_no_words_of_the_first_page_lie_over_others_or_the_wall(px_per_m):
     assert not any(a.overlaps(b) for i, a in enumerate(boxes) for b in boxes[:i])
 
 
-@pytest.fixture(scope="module")
-def small():
-    """Steps 1 (wedge: 2), 3, 4 on the ground, then 5, 6, 7 upon them."""
-    return assembly()
-
-
 @pytest.mark.parametrize(("angle_deg", "words"), [
     (0.0, "as it lies"), (-2.4, "as it lies"), (362.0, "as it lies"), (3.0, "turn left 3°"),
     (97.4, "turn left 97°"), (-97.4, "turn right 97°"), (262.6, "turn right 97°"),
@@ -173,7 +143,9 @@ def test_turns_are_the_short_way_round(angle_deg, words):
     assert turn_words(angle_deg) == words
 
 
-def test_neighbours_are_those_that_stand_already(small):
+def test_neighbours_are_those_that_stand_already():
+    # Steps 1 (wedge: 2), 3, 4 on the ground, then 5, 6, 7 upon them.
+    small = assembly()
     assert beside(small, small.parts[0]) == {"on": [GROUND]}
     assert beside(small, small.parts[6]) == {"on": [4], "right of": [6]}
     for step, words in (
@@ -185,33 +157,17 @@ def test_neighbours_are_those_that_stand_already(small):
         (3, "on the ground, right of 1"),
     ):
         assert beside_words(small, small.parts[step - 1]) == words
-
-
-def test_sizes_and_places_have_units(small):
-    wedge, px = small.parts[1], assembly(px_per_m=None)
-    assert wedge_words(small, wedge).endswith(" 30 mm, under its right end")
-    assert length_words(small, 0.1234, 2.0) == "12.3, 200.0 cm"
-    assert length_words(px, 12.3) == "12 px"
-    assert size_words(px, 12.3, 4.0) == "12 \N{MULTIPLICATION SIGN} 4 px"
-    # The left one of two that are as low.
-    assert lowest_corner(small.parts[2]) == pytest.approx((0.3, 0.0))
-    assert pages.drawn_factor(small, wedge) == 1 / 5  # 150 mm x 30 mm in 44 mm x 25 mm
-    fine = assembly(px_per_m=3000.0)
-    assert pages.drawn_factor(fine, next(fine.wedges)) == 1.0  # 10 mm x 2 mm
-
-
-def test_it_does_not_matter_which_part_of_a_pair_an_interface_names_first(small):
+    # It does not matter which part of a pair an interface names first.
     faces = []
     for face in small.model.interfaces:
         x, y = face.normal
         turned = replace(face, block=face.other, other=face.block, normal=(-x, -y))
         faces.append(face if face.other == GROUND else turned)
-    model = RigidBlockModel(small.model.blocks, tuple(faces))
-    for part in small.parts:
-        assert beside(replace(small, model=model), part) == beside(small, part)
-
-
-def test_stones_side_by_side_that_meet_at_a_corner_are_not_upon_each_other(small):
+    other = replace(small, model=RigidBlockModel(small.model.blocks, tuple(faces)))
+    assert [beside(other, part) for part in small.parts] == [
+        beside(small, part) for part in small.parts
+    ]
+    # Stones side by side that meet at a corner are not upon each other.
     left, right, _, above = small.parts[2:6]
 
     def meeting(part, other, at, normal):
@@ -223,3 +179,17 @@ def test_stones_side_by_side_that_meet_at_a_corner_are_not_upon_each_other(small
         assert beside(corner, right) == {"right of": [left.step]}
     # A stone that a contact of the same slope carries over its width is on it.
     assert beside(meeting(above, left, (0.4, 0.15), (0.8, 0.6)), above) == {"on": [left.step]}
+
+
+def test_sizes_and_places_have_units():
+    small, px = assembly(), assembly(px_per_m=None)
+    wedge = small.parts[1]
+    assert wedge_words(small, wedge).endswith(" 30 mm, under its right end")
+    assert length_words(small, 0.1234, 2.0) == "12.3, 200.0 cm"
+    assert length_words(px, 12.3) == "12 px"
+    assert size_words(px, 12.3, 4.0) == "12 \N{MULTIPLICATION SIGN} 4 px"
+    # The left one of two that are as low.
+    assert lowest_corner(small.parts[2]) == pytest.approx((0.3, 0.0))
+    assert pages.drawn_factor(small, wedge) == 1 / 5  # 150 mm x 30 mm in 44 mm x 25 mm
+    fine = assembly(px_per_m=3000.0)
+    assert pages.drawn_factor(fine, next(fine.wedges)) == 1.0  # 10 mm x 2 mm

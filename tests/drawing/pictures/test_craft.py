@@ -24,30 +24,23 @@ def hatched(ax):
     return {int(patch.get_gid().split("-")[1]): patch.get_hatch() for patch in found}
 
 
-def test_stones_at_fault_have_colour_and_hatch():
-    loops = courses([[2.0] * 4]) | {9: box(2, 1, 1, 2)}
-    ax = plot_finding(look(Masonry(loops)), "on_end")
+def test_stones_at_fault_have_colour_and_hatch_and_lines_their_place():
+    ax = plot_finding(look(Masonry(courses([[2.0] * 4]) | {9: box(2, 1, 1, 2)})), "on_end")
     assert hatched(ax) == {9: FAULT.hatch}
     assert to_hex(patches(ax)["stone-9"].get_facecolor()) == FAULT.fill
     (mark,) = lines(ax, "mark-on_end")
     assert np.ptp(mark[:, 0]) == pytest.approx(0.0, abs=1e-9)
-
-
-def test_a_running_joint_is_a_line_between_hatched_stones():
-    ax = plot_finding(look(Masonry(stack_bond(2, 3))), "running_joints")
+    report = look(Masonry(stack_bond(2, 3), steps={i: 40 + i for i in range(1, 7)}))
+    ax = plot_finding(report, "running_joints")
     assert hatched(ax) == dict.fromkeys(range(1, 7), BESIDE.hatch)
     (mark,) = lines(ax, "mark-running_joints")
     assert mark[:, 0] == pytest.approx(2.0)
     assert (mark[:, 1].min(), mark[:, 1].max()) == pytest.approx((0.0, 3.0), abs=0.05)
     said = "running joints: broken, 3 courses   (good ≤ 1, fair ≤ 2)"
     assert said in ax.get_title("left")
-
-
-def test_numbers_are_steps_of_a_plan():
-    steps = {i: 40 + i for i in stack_bond(2, 2)}
-    ax = plot_finding(look(Masonry(stack_bond(2, 2), steps=steps)), "laps")
-    assert sorted(text.get_text() for text in ax.texts) == ["41", "42", "43", "44"]
-    assert "not judged" in ax.get_title("left")
+    # Numbers are the steps of a plan.
+    assert sorted(numbers(ax)) == ["41", "42", "43", "44", "45", "46"]
+    assert "not judged" in plot_finding(report, "laps").get_title("left")
 
 
 def test_the_sheet_has_a_panel_for_every_rule(tmp_path):
@@ -89,7 +82,7 @@ def test_blocks_are_drawn_where_they_ended_with_dashes_where_they_were_planned()
     assert written["3"].get_zorder() < over < written["8"].get_zorder()
 
 
-def test_areas_claimed_by_two_are_shown_and_only_what_is_there_is_explained():
+def test_areas_claimed_by_two_are_shown_what_is_there_explained_and_views_one_under_another():
     area = np.array([[5, 5], [9, 5], [9, 9]], float)
     view = check.FailureView("", PLANNED_BLOCKS, (60.0, 50.0), (3,), common=[area, area + 20])
     ax = check.plot_failure(view)
@@ -104,11 +97,8 @@ def test_areas_claimed_by_two_are_shown_and_only_what_is_there_is_explained():
     asked = ["fails", "where it was planned", "wall that was to be built"]
     legend = check.plot_failure(VIEW).get_legend()
     assert [text.get_text() for text in legend.get_texts()] == asked
-
-
-@pytest.mark.parametrize("count", [1, 3])
-def test_views_stand_under_each_other(count):
-    places = [ax.get_position() for ax in check.plot_failures([VIEW] * count).axes]
-    assert len(places) == count
-    heights = [1.0, *(y for place in places for y in (place.y1, place.y0)), 0.0]
-    assert all(above > below for above, below in pairwise(heights))
+    for count in (1, 3):
+        places = [ax.get_position() for ax in check.plot_failures([VIEW] * count).axes]
+        assert len(places) == count
+        heights = [1.0, *(y for place in places for y in (place.y1, place.y0)), 0.0]
+        assert all(above > below for above, below in pairwise(heights))

@@ -10,12 +10,7 @@ from drystone.contacts.blocks import model_from_labels
 from drystone.contacts.given import model_from_json, polygons_from_json
 from drystone.drawing import plot_contacts, plot_forces
 from drystone.drawing.palette import FIXED_COLOUR, PALE
-from drystone.drawing.pictures.forces import (
-    LONGEST_SHARE,
-    NORMAL_SHARE,
-    WIDEST_PT,
-    resultants,
-)
+from drystone.drawing.pictures.forces import LONGEST_SHARE, NORMAL_SHARE, WIDEST_PT, resultants
 from drystone.statics.model import GROUND, Interface, RigidBlockModel
 from tests.drawing.pictures.test_stones import patches
 from tests.statics.walls import coursed, irregular, limit_load, stacked
@@ -58,13 +53,10 @@ def test_interfaces_lie_where_the_blocks_touch(empty_rows):
     np.testing.assert_allclose(ends, [[0, 0], [20, 0], [5, 10], [20, 10]])
 
 
-def test_contacts_at_a_point_are_dots_of_their_own():
+def test_points_are_dots_fixed_blocks_have_a_colour_and_next_to_nothing_can_be_drawn():
     ax = plot_contacts(CORNERED, model_from_labels(CORNERED).model)
     np.testing.assert_allclose(dots(ax, "contact at a point"), [[4, 4]])
     np.testing.assert_allclose(dots(ax, "end of an interface"), [[0, 0], [4, 0]])
-
-
-def test_fixed_blocks_have_a_colour_and_next_to_nothing_can_be_drawn():
     ax = plot_contacts(polygons_from_json(ABUTMENT), model_from_json(ABUTMENT))
     drawn = patches(ax)
     assert to_hex(drawn["block-4"].get_facecolor()) == FIXED_COLOUR
@@ -126,16 +118,10 @@ def test_a_force_acts_at_the_only_point_or_in_the_middle(ends, normal, forces, p
     model = RigidBlockModel(block, (Interface(1, GROUND, np.array(ends), normal),))
     (one,) = resultants(model, np.array(forces))
     assert (one.point, one.force) == (pytest.approx(point), pytest.approx(force))
-
-
-def test_idle_interfaces_are_left_out_and_forces_of_another_model_refused():
-    model = model_from_json({"blocks_xywh": [[0, 0, 2, 1], [2, 0, 2, 1]]})
-    forces = np.zeros((model.contact_count, 2))
-    assert resultants(model, forces) == ()
-    forces[:2, 0] = 1.0
-    assert [one.interface.block for one in resultants(model, forces)] == [1]
-    with pytest.raises(ValueError, match=f"1 forces for {len(forces)} contact points"):
-        resultants(model, forces[:1])
+    # Idle interfaces have none, and forces of another model are refused.
+    assert resultants(model, 0 * np.array(forces)) == ()
+    with pytest.raises(ValueError, match=f"{len(forces) + 1} forces for {len(forces)} contact p"):
+        resultants(model, np.array([*forces, [1.0, 0.0]]))
 
 
 @pytest.mark.parametrize("empty_rows", [0, 5])

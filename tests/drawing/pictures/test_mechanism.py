@@ -27,8 +27,7 @@ from tests.strategies import repeatable
 L_CORNERS = np.array([[0, 8], [12, 8], [12, 12], [6, 12], [6, 16], [0, 16], [0, 8]], float)
 
 
-def labels():
-    return examples.wall().labels
+LABELS = examples.wall().labels
 
 
 def vertices(ax, gid):
@@ -40,19 +39,31 @@ def slide(velocity):
     return Mechanism((12,), np.array([velocity], float))
 
 
-def test_a_sliding_block_moves_by_the_largest_share_of_the_height():
-    ax = plot_mechanism(labels(), slide((-1, 0, 0)), "left", 0.4)
-    # The wall of the example is 16 px high.
-    np.testing.assert_allclose(vertices(ax, "moved-12"), L_CORNERS - [16 * LARGEST_SHARE, 0])
+def test_a_sliding_block_moves_with_its_number_by_the_largest_share_of_the_height():
+    largest = 16 * LARGEST_SHARE  # the wall of the example is 16 px high
+    for asked, said in ((True, "12"), ({12: 7}, "7")):
+        ax = plot_mechanism(LABELS, slide((-1, 0, 0)), "left", 0.4, numbers=asked)
+        assert numbers(ax)[said].get_position() == pytest.approx((5.0 - largest, 34 / 3))
+    np.testing.assert_allclose(vertices(ax, "moved-12"), L_CORNERS - [largest, 0])
     np.testing.assert_allclose(vertices(ax, "before-12"), L_CORNERS)
     np.testing.assert_allclose(vertices(ax, "moved-3"), vertices(ax, "before-3"))
-    assert ax.get_xlim()[0] < -16 * LARGEST_SHARE
-
-
-def test_colour_is_the_share_of_the_largest_displacement():
-    drawn = patches(plot_mechanism(labels(), examples.mechanism(), "left", 0.4))
+    assert ax.get_xlim()[0] < -largest
+    # What stays has no multiplier.
+    still = plot_mechanism(LABELS, slide((0, 0, 0)), "left")
+    assert not any("None" in t.get_text() or "=" in t.get_text() for t in still.texts)
+    np.testing.assert_allclose(vertices(still, "moved-12"), L_CORNERS)
+    # Colour is the share of the largest displacement.
+    drawn = patches(plot_mechanism(LABELS, examples.mechanism(), "left", 0.4))
     colour = {i: to_hex(drawn[f"moved-{i}"].get_facecolor()) for i in (3, 12, 300)}
     assert colour == {3: to_hex(COLOURS(0.0)), 12: to_hex(COLOURS(1.0)), 300: to_hex(COLOURS(0.5))}
+
+
+def test_low_walls_move_by_a_share_of_their_length_and_those_in_the_air_have_no_ground():
+    row, moved = {1: box(0, 3, 50, 4), 2: box(50, 3, 99, 4)}, np.array([[1.0, 0.0, 0.0]])
+    motion = motion_of(row, Mechanism((2,), moved))
+    assert motion.displacement[1] == pytest.approx([99 * 0.2 * LARGEST_SHARE, 0, 0])
+    assert "ground" in patches(plot_mechanism(LABELS, slide((0, 0, 0)), "left"))
+    assert "ground" not in patches(plot_mechanism(row, Mechanism((1,), moved), "right"))
 
 
 @pytest.mark.parametrize(("direction", "load", "way", "said"), [
@@ -62,39 +73,17 @@ def test_colour_is_the_share_of_the_largest_displacement():
     ("left", "point load on 7", None, r"point load on 7, $\alpha$ = 0.432"),
 ])  # fmt: skip
 def test_the_arrow_points_where_the_load_goes(direction, load, way, said):
-    ax = plot_mechanism(labels(), examples.mechanism(), direction, 0.4321, load=load)
+    ax = plot_mechanism(LABELS, examples.mechanism(), direction, 0.4321, load=load)
     arrows = [text for text in ax.texts if text.get_gid() in ("live-load", "own-weight")]
     ways = [tuple(np.sign(np.subtract(one.xy, one.get_position()))) for one in arrows]
     assert ways == ([] if way is None else [way])
     assert [text.get_text() for text in ax.texts if text.get_text()] == [said]
 
 
-def test_what_stays_has_no_multiplier_and_polygons_above_the_ground_have_none():
-    still = plot_mechanism(labels(), slide((0, 0, 0)), "left")
-    assert not any("None" in t.get_text() or "=" in t.get_text() for t in still.texts)
-    np.testing.assert_allclose(vertices(still, "moved-12"), L_CORNERS)
-    assert "ground" in patches(still)
-    ax = plot_mechanism({1: box(0, 3, 2, 4)}, Mechanism((1,), np.array([[1.0, 0, 0]])), "right")
-    assert "ground" not in patches(ax)
-
-
-def test_numbers_move_with_their_blocks():
-    for asked, said in ((True, "12"), ({12: 7}, "7")):
-        ax = plot_mechanism(labels(), slide((-1, 0, 0)), "left", numbers=asked)
-        place = numbers(ax)[said].get_position()
-        assert place == pytest.approx((5.0 - 16 * LARGEST_SHARE, 34 / 3))
-
-
-def test_low_walls_move_by_a_share_of_their_length():
-    row = {1: box(0, 0, 50, 1), 2: box(50, 0, 99, 1)}
-    motion = motion_of(row, Mechanism((2,), np.array([[1.0, 0.0, 0.0]])))
-    assert motion.displacement[1] == pytest.approx([99 * 0.2 * LARGEST_SHARE, 0, 0])
-
-
 @given(twist=st.tuples(*[st.integers(-9, 9)] * 3), amplitude=st.floats(0, 1))
 @repeatable(30)
 def test_a_motion_keeps_every_block_rigid_and_starts_with_its_velocity(twist, amplitude):
-    motion = motion_of(labels(), slide(twist))
+    motion = motion_of(LABELS, slide(twist))
     place = [region.id for region in motion.regions].index(12)
     before, moved = motion.regions[place].loops[0], motion.at(amplitude)[place]
     (after,) = moved.loops
@@ -120,8 +109,9 @@ TALL = stacked((20, 40, 0))
 ROCKING = limit_load(model_from_labels(TALL).model, "right", mechanism=True).mechanism
 
 
-def arrays(frames):
-    return [np.asarray(frame, int) for frame in frames]
+def frames_of(direction, alpha=None, **more):
+    made = mechanism_frames(TALL, ROCKING, direction, alpha, **more)
+    return [np.asarray(frame, int) for frame in made]
 
 
 def red(frame):
@@ -129,8 +119,8 @@ def red(frame):
     return np.nonzero((frame[..., 0] > 150) & (frame[..., 1] < 60) & (frame[..., 2] < 90))
 
 
-def test_it_goes_from_rest_to_the_largest_displacement_and_back():
-    frames = arrays(mechanism_frames(TALL, ROCKING, "right", 0.5, frames=8))
+def test_it_goes_from_rest_to_the_largest_displacement_and_back_and_nothing_is_cut_off():
+    frames = frames_of("right", 0.5, frames=8)
     assert len(frames) == 8
     assert len({frame.shape for frame in frames}) == 1
     for step in range(1, 4):
@@ -140,13 +130,9 @@ def test_it_goes_from_rest_to_the_largest_displacement_and_back():
     first, second, third, last = np.diff(centre)
     assert 0 < first < 0.6 * second
     assert 0 < last < 0.6 * third
-
-
-def test_numbers_move_along_and_nothing_is_cut_off():
-    """The outermost pixels are white in all frames."""
-    made = (mechanism_frames(TALL, ROCKING, "right", 0.5, frames=4, numbers=n) for n in (0, 1))
+    # Numbers move along, and the outermost pixels are white in all frames.
     places = []
-    for plain, frame in zip(*map(arrays, made), strict=True):
+    for plain, frame in zip(frames[::2], frames_of("right", 0.5, frames=4, numbers=1), strict=True):
         for edge in (frame[0], frame[-1], frame[:, 0], frame[:, -1]):
             assert (edge == 255).all()
         assert abs(max(frame.shape) - LONGER_SIDE_PX) <= 1
@@ -155,7 +141,7 @@ def test_numbers_move_along_and_nothing_is_cut_off():
 
 
 def test_a_gif_loops_repeats_to_the_byte_and_is_close_to_the_picture(tmp_path):
-    frames = arrays(mechanism_frames(TALL, ROCKING, None, frames=6))
+    frames = frames_of(None, frames=6)
     one, two = tmp_path / "one.gif", tmp_path / "two.gif"
     for path in (one, two):
         save_mechanism_animation(path, TALL, ROCKING, None, frames=6)
@@ -165,11 +151,8 @@ def test_a_gif_loops_repeats_to_the_byte_and_is_close_to_the_picture(tmp_path):
         for step, frame in enumerate(frames):
             image.seek(step)
             assert np.abs(np.asarray(image.convert("RGB"), int) - frame).mean() < 3
-
-
-def test_what_is_no_animation_is_refused(tmp_path):
     with pytest.raises(ValueError, match="at least 2 frames, not 1"):
-        mechanism_frames(TALL, ROCKING, "right", frames=1)
+        frames_of("right", frames=1)
     with pytest.raises(ValueError, match=r"end in \.gif"):
         save_mechanism_animation(tmp_path / "a.mp4", TALL, ROCKING, "right")
     with pytest.raises(ValueError, match=r"lacks: \[99\]"):

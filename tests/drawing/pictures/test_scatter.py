@@ -37,29 +37,23 @@ def test_histograms_count_every_wall_that_stands_and_mark_quantiles(falling):
     ax = plot_scatter(falling)
     fallen = falling.counts[LimitStatus.UNSTABLE]
     assert f"{fallen} of 40 ({100 * fallen / 40:.3g} %) do not stand" in ax.get_title("left")
-    alpha, value, _ = ax.child_axes
-    for panel, values, quantiles in (
-        (alpha, falling.alpha, falling.alpha_quantiles),
-        (value, falling.value, falling.value_quantiles),
-    ):
-        bars = panel.patches
-        assert sum(bar.get_height() for bar in bars) == len(values) < 40
+    alpha, value, friction = ax.child_axes
+    for panel, name in ((alpha, "alpha"), (value, "value")):
+        values, quantiles = getattr(falling, name), getattr(falling, f"{name}_quantiles")
+        assert sum(bar.get_height() for bar in panel.patches) == len(values) < 40
         marked = [lines(panel)[f"quantile-{name}"].get_xdata()[0] for name in ("5", "50", "95")]
         assert marked == pytest.approx(quantiles)
         assert f"95 %: {quantiles.high:.3f}" in panel.get_title()
     assert lines(alpha)["unshaken"].get_xdata()[0] == pytest.approx(0.2)  # about the toe
     assert lines(value)["unshaken"].get_xdata()[0] == falling.unshaken.value
     assert (alpha.get_xlabel(), value.get_xlabel()) == ("min alpha", "F_LR = min alpha / mu")
-
-
-def test_friction_is_drawn_against_alpha_with_the_wall_itself_and_those_that_fall(falling):
-    drawn = lines(plot_scatter(falling).child_axes[2])
+    # Friction is drawn against alpha, with the wall itself and those that fall.
+    drawn = lines(friction)
     assert drawn["walls"].get_xdata().tolist() == falling.standing_mu.tolist()
     assert drawn["walls"].get_ydata().tolist() == falling.alpha.tolist()
-    assert drawn["unshaken-point"].get_xydata().tolist() == [
-        [0.58, min(falling.unshaken.left.alpha, falling.unshaken.right.alpha)]
-    ]
-    assert len(drawn["falling"].get_xdata()) == falling.counts[LimitStatus.UNSTABLE]
+    least = min(falling.unshaken.left.alpha, falling.unshaken.right.alpha)
+    assert drawn["unshaken-point"].get_xydata().tolist() == [[0.58, least]]
+    assert len(drawn["falling"].get_xdata()) == fallen
     assert "sliding" not in drawn  # out of reach here
     flat = model_from_labels(stacked((20, 10, 0))).model
     slides = plot_scatter(scatter(flat, ScatterSettings(samples=5, mu=(0.4, 0.8))))
@@ -83,15 +77,12 @@ def test_panels_are_those_that_there_is_something_for(shaken):
     words = plot_scatter(one).get_title("left")
     assert "gave up on 1" in words
     assert "for each interface" in words
-
-
-def test_when_no_wall_stands_the_picture_says_so():
+    # When no wall stands the picture says so.
     model = model_from_labels(stacked((20, 10, 0), (20, 10, 19))).model
     ax = plot_scatter(scatter(model, ScatterSettings(samples=3, mu=(0.4, 0.8))))
     assert [text.get_text() for text in ax.child_axes[0].texts] == ["no wall stands"]
-    assert len(ax.child_axes) == 1
+    assert (len(ax.child_axes), ax.get_legend()) == (1, None)
     assert "3 of 3 (100 %) do not stand" in ax.get_title("left")
-    assert ax.get_legend() is None
 
 
 def all_texts(ax):
@@ -127,12 +118,10 @@ def test_no_text_overlaps_another(name, shaken, falling):
         assert not box.overlaps(second), f"{one} / {other}"
 
 
-CURVE = (AtFriction(0.4, 0.3, 0.4), AtFriction(0.6, None, 0.5))
-
-
-@pytest.mark.parametrize("slides_at_mu", [True, False])
-def test_a_wall_slides_at_mu_on_a_tilting_table_only(slides_at_mu):
-    axes = plot_friction(CURVE, 0.58, slides_at_mu=slides_at_mu)
-    words = [text.get_text() for text in axes.get_legend().get_texts()]
-    assert ("the whole wall slides" in words) == slides_at_mu
-    assert {"to the left", "to the right"} <= set(words)
+def test_a_wall_slides_at_mu_on_a_tilting_table_only():
+    curve = (AtFriction(0.4, 0.3, 0.4), AtFriction(0.6, None, 0.5))
+    for slides_at_mu in (True, False):
+        axes = plot_friction(curve, 0.58, slides_at_mu=slides_at_mu)
+        words = [text.get_text() for text in axes.get_legend().get_texts()]
+        assert ("the whole wall slides" in words) == slides_at_mu
+        assert {"to the left", "to the right"} <= set(words)

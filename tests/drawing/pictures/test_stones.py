@@ -8,21 +8,13 @@ import pytest
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
-from drystone.drawing import (
-    plot_choice,
-    plot_joint_paths,
-    plot_labels,
-    plot_stones,
-    plot_wall,
-)
+from drystone.drawing import plot_choice, plot_joint_paths, plot_labels, plot_stones, plot_wall
 from drystone.drawing.palette import PLAIN_COLOUR, WEDGE_COLOUR, cluster_colour, text_colour
 from drystone.drawing.pictures.wall import COLUMNS
 from drystone.model.site import Site
 from drystone.model.stone import Source, StoneSet
 from drystone.model.wall import Wall
-from drystone.planner.planner import Planner
 from tests.drawing import examples
-from tests.planner.scenes import RUBBLE_SITE, finish, greedy, rubble
 from tests.verify.exact_examples import exact_example
 
 CLUSTERS = examples.CLUSTERS | {examples.UNUSED: 3}
@@ -76,17 +68,7 @@ def test_stones_of_a_folder_do_not_cover_each_other():
     assert ax.get_ylim()[1] > max(box.y1 for box in boxes)
 
 
-def test_labels_are_drawn_with_their_ids():
-    labels = np.array([[0, 70_000], [300, 70_000]], np.uint32)
-    ax = plot_labels(labels)
-    assert set(patches(ax)) == {"block-300", "block-70000"}
-    written = numbers(ax)
-    assert written["300"].get_position() == (0.5, 0.5)
-    assert written["70000"].get_position() == (1.5, 1.0)
-    assert len({to_hex(patch.get_facecolor()) for patch in ax.patches}) == 2
-
-
-def test_paths_run_through_the_centres_of_their_pixels():
+def test_blocks_have_their_ids_and_paths_run_through_the_centres_of_pixels():
     labels = examples.wall().labels
     down = np.array([[-1, 13], [0, 13], [1, 14], [19, 14]])
     across = np.array([[11, 0], [11, 43]])
@@ -95,6 +77,11 @@ def test_paths_run_through_the_centres_of_their_pixels():
     assert lines["path-1"] == [[13.5, 20.5], [13.5, 19.5], [14.5, 18.5], [14.5, 0.5]]
     assert lines["path-2"] == [[0.5, 8.5], [43.5, 8.5]]
     assert set(patches(ax)) == {f"block-{i}" for i in np.unique(labels) if i}
+    ax = plot_labels(np.array([[0, 70_000], [300, 70_000]], np.uint32))
+    assert set(patches(ax)) == {"block-300", "block-70000"}
+    written = {number: text.get_position() for number, text in numbers(ax).items()}
+    assert written == {"300": (0.5, 0.5), "70000": (1.5, 1.0)}
+    assert len({to_hex(patch.get_facecolor()) for patch in ax.patches}) == 2
 
 
 def test_every_stone_wedge_frame_and_ground_is_drawn_once():
@@ -112,6 +99,10 @@ def test_every_stone_wedge_frame_and_ground_is_drawn_once():
     assert set(patches(empty)) == {"frame", "ground"}
     assert empty.get_title(loc="left") == "nothing yet"
     assert not empty.texts
+    # A step is counted for each wedge.
+    wall = examples.wall()
+    turned = Wall(wall.site, wall.labels.copy(), (wall.groups[-1], *wall.groups[:-1]))
+    assert set(numbers(plot_wall(turned))) == {"1", "3", "4", "5", "6"}
 
 
 @pytest.mark.parametrize("px_per_m", [None, 50.0])
@@ -125,13 +116,6 @@ def test_stones_stand_at_their_place_with_the_steps_of_the_plan_as_numbers(px_pe
     np.testing.assert_allclose(drawn["stone-12"].get_path().vertices, l_shape)
     frame = drawn["frame"].get_path().get_extents()
     assert frame.get_points().ravel() == pytest.approx([0, 0, 44 * units, 20 * units])
-
-
-def test_a_step_is_counted_for_each_wedge():
-    wall = examples.wall()
-    groups = (wall.groups[-1], *wall.groups[:-1])
-    ax = plot_wall(Wall(wall.site, wall.labels.copy(), groups))
-    assert set(numbers(ax)) == {"1", "3", "4", "5", "6"}
 
 
 @pytest.mark.parametrize(("scale", "px_per_m"), [(1.0, None), (0.5, 50.0)])
@@ -154,13 +138,9 @@ def test_a_wall_of_outlines_is_drawn_by_its_outlines(scale, px_per_m):
 FIGURES = {"F_SF": 0.8, "F_AV": 20.0, "F_AH": 2.0, "F_LR": 0.5}
 
 
-@pytest.fixture(scope="module")
-def wall():
-    return finish(Planner(rubble(), RUBBLE_SITE, seed=1, settings=greedy())).build.wall
-
-
 @pytest.mark.parametrize("count", [1, COLUMNS, COLUMNS + 1])
-def test_every_wall_has_its_picture_and_its_points(wall, count):
+def test_every_wall_has_its_picture_and_its_points(count):
+    wall = examples.wall()
     values = [{**FIGURES, "F_SF": 0.8 + 0.01 * k} for k in range(count)]
     figure = plot_choice([wall] * count, [*values[:-1], {**values[-1], "F_AV": None}])
     *walls, one, two = figure.axes

@@ -92,46 +92,46 @@ def example_view(plan=None, wall=None):
     return view_of_result(found)
 
 
-@pytest.fixture(scope="module")
-def pictures(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("pictures")
-    write_pictures(folder, examples.wall(), examples.CLUSTERS, resistance=examples.resistance())
-    return folder
-
-
-@pytest.fixture(scope="module")
-def report(pictures, tmp_path_factory):
-    path = tmp_path_factory.mktemp("report") / "report.html"
-    return write_report(path, example_view(), pictures=pictures).read_text(encoding="utf-8")
-
-
-def test_the_report_says_every_step_result_input_and_notice(report):
-    page = Page(report)
-    steps = examples.plan().steps
+def test_the_report_says_every_step_result_input_and_notice_and_needs_no_other_file(tmp_path):
+    write_pictures(tmp_path, examples.wall(), examples.CLUSTERS, resistance=examples.resistance())
+    path = write_report(tmp_path / "report.html", example_view(), pictures=tmp_path)
+    report = path.read_text("utf-8")
+    page, steps = Page(report), examples.plan().steps
     assert [a["id"] for a in page.all("tr") if "id" in a] == [f"step-{s.step}" for s in steps]
     for stone in (*examples.CLUSTERS, examples.UNUSED):
         assert re.search(rf"\b{stone}\b", page.text)
     for said in (
         f"Push wedge {examples.WEDGE} in under the left end of stone 300 (step 5): 3 {TIMES} 2 px",
-        "Stones left over: 40",
-        "5 of 6 stones, ",
-        "no acceptable place was found five times in a row",
-        "0.672",
-        "4.25 %",
-        "Load multiplier (adequacy factor) to the left",
-        "in three walls of masons, of other stones",
-        f"44.0 {TIMES} 20.0 px",
-        "0" * 64,
-        "W112",
-        "3.46 s",
-        "upper bound",
-        "placement.rule",
-        "1 (6.0 px²)",
-        "Geometry raster",
+        "Stones left over: 40", "5 of 6 stones, ", "0.672", "4.25 %", f"44.0 {TIMES} 20.0 px",
+        "no acceptable place was found five times in a row", "0" * 64, "W112", "3.46 s",
+        "Load multiplier (adequacy factor) to the left", "upper bound", "placement.rule",
+        "in three walls of masons, of other stones", "1 (6.0 px²)", "Geometry raster",
         "Stones touch where their pixels have edges or corners in common",
-    ):
+    ):  # fmt: skip
         assert said in page.text
     assert "contact tolerance" not in page.text
+    # Names are escaped.
+    for markup in ("<b>", "<script>alert", "<i>"):
+        assert markup not in report
+    for said in ("<b>PR.png", "<script>alert(1)</script>", "<i>PR</i>"):
+        assert said in page.text
+    assert page.data["title"] == "Dry-stone wall from <b>PR.png"
+    images = page.all("img")
+    for attrs, name in zip(images, ("picture.png", "mechanism_left.png"), strict=True):
+        embedded = base64.b64decode(attrs["src"].removeprefix("data:image/png;base64,"))
+        assert embedded == (tmp_path / name).read_bytes()
+        assert attrs["alt"]
+    rest = re.sub(r'src="[^"]*"', "", report).replace("http://www.w3.org/2000/svg", "")
+    assert not re.search(r"https?:|url\((?!#)|@import", rest)
+    assert all("src" not in attrs for attrs in page.all("script"))
+    assert [a["href"] for a in page.all("link")] == ["data:,"]
+    (policy,) = (a["content"] for a in page.all("meta") if "http-equiv" in a)
+    assert policy.startswith("default-src 'none'; ")
+    assert "no picture of a mechanism to the right" in page.text
+    # Script and style cannot end their elements, and no markup is made of data.
+    assert not re.search(r"innerHTML|outerHTML|insertAdjacentHTML|document\.write", viewer_script())
+    assert "</script" not in viewer_script()
+    assert "</style" not in viewer_style()
 
 
 def test_a_plan_on_outlines_says_so(tmp_path):
@@ -149,65 +149,25 @@ def test_a_plan_on_outlines_says_so(tmp_path):
         assert f"{reach} px of the image" in assumptions(other)[-1]
 
 
-def test_names_are_escaped(report):
-    assert "<b>" not in report
-    assert "<script>alert" not in report
-    assert "<i>" not in report
-    page = Page(report)
-    assert "<b>PR.png" in page.text
-    assert "<script>alert(1)</script>" in page.text
-    assert "<i>PR</i>" in page.text
-    assert page.data["title"] == "Dry-stone wall from <b>PR.png"
-
-
-def test_the_file_needs_nothing_else(report, pictures):
-    page = Page(report)
-    images = page.all("img")
-    for attrs, name in zip(images, ("picture.png", "mechanism_left.png"), strict=True):
-        embedded = base64.b64decode(attrs["src"].removeprefix("data:image/png;base64,"))
-        assert embedded == (pictures / name).read_bytes()
-        assert attrs["alt"]
-    rest = re.sub(r'src="[^"]*"', "", report).replace("http://www.w3.org/2000/svg", "")
-    assert not re.search(r"https?:|url\((?!#)|@import", rest)
-    assert all("src" not in attrs for attrs in page.all("script"))
-    assert [a["href"] for a in page.all("link")] == ["data:,"]
-    (policy,) = (a["content"] for a in page.all("meta") if "http-equiv" in a)
-    assert policy.startswith("default-src 'none'; ")
-    assert "no picture of a mechanism to the right" in page.text
-    # Script and style cannot end their elements, and no markup is made of data.
-    assert not re.search(r"innerHTML|outerHTML|insertAdjacentHTML|document\.write", viewer_script())
-    assert "</script" not in viewer_script()
-    assert "</style" not in viewer_style()
-
-
-def test_missing_metrics_are_not_defined_and_never_zero(tmp_path):
+def test_missing_metrics_are_not_defined_a_missing_index_a_dash_and_metres_centimetres(tmp_path):
     missing = PlanMetrics(0.4, None, None, None, 0.1, 0.1, None, 0.3, 0.0)
-    plan = examples.plan(metrics=missing)
+    wall = examples.wall(px_per_m=50.0)
+    plan = examples.plan(wall, metrics=missing)
     values = {card.symbol or card.name: card.value for card in cards(plan)}
     for name in ("F_AV", "F_AH", "F_LR", f"{ALPHA} left"):
         assert values[name] == "not defined"
     assert values[f"{ALPHA} right"] == "0.300"
     assert [number(value) for value in (float("nan"), -1e-9)] == ["not defined", "0.000"]
-    page = written_page(tmp_path, example_view(plan))
+    step = replace(plan.stone_steps[0], indices={**plan.stone_steps[0].indices, "LLC": None})
+    # Bytes of a file name that are no UTF-8 end no report.
+    notice = {"code": "W117", "message": "left aside: \udcdcbersicht.", "cure": ""}
+    view = example_view(replace(plan, steps=(step, *plan.steps[1:])), wall) | {"notices": [notice]}
+    text = write_report(tmp_path / "report.html", view, pictures=tmp_path).read_text("utf-8")
+    assert "?bersicht" in text
+    assert "?bersicht" in Shown(view).write(tmp_path / "view.html").read_text("utf-8")
+    page = Page(text)
     assert page.texts.count("not defined") == 4
     assert "no picture of the wall" in page.text
-
-
-def test_half_a_pair_of_characters_ends_no_report(tmp_path):
-    """Bytes of a file name that are no UTF-8 come as such, from whoever forgot them."""
-    notice = {"code": "W117", "message": "left aside: \udcdcbersicht.", "cure": ""}
-    view = {**example_view(), "notices": [notice]}
-    path = write_report(tmp_path / "report.html", view)
-    assert "?bersicht" in path.read_text("utf-8")
-    assert "?bersicht" in Shown(view).write(tmp_path / "view.html").read_text("utf-8")
-
-
-def test_a_missing_index_is_a_dash_and_metres_are_told_in_centimetres(tmp_path):
-    wall = examples.wall(px_per_m=50.0)
-    plan = examples.plan(wall)
-    step = replace(plan.stone_steps[0], indices={**plan.stone_steps[0].indices, "LLC": None})
-    view = example_view(replace(plan, steps=(step, *plan.steps[1:])), wall)
-    text = write_report(tmp_path / "one.html", view).read_text("utf-8")
     cells = re.findall(r"<td>(.*?)</td>", text.split('id="step-1"')[1].split("</tr>")[0])
     assert set(INDICES) == set(INDEX_NAMES)
     told = ["\N{EN DASH}" if i == "LLC" else number(step.indices[i]) for i in INDICES]
@@ -242,17 +202,18 @@ def test_the_viewer_alone_is_a_page_or_a_frame():
     assert ds.view(result("paper"))._repr_html_() == frame
 
 
-@pytest.mark.parametrize(
-    ("zoom", "until", "said"),
-    [(2, None, "something else"), (1, 10, "cannot be read"), (1, -200, "cannot be read")],
-)
-def test_viewer_and_sheet_refuse_a_photograph_alike(zoom, until, said, tmp_path):
+def test_viewer_and_sheet_refuse_a_photograph_alike(tmp_path):
     folder, source = written(tmp_path), result().plan.source
-    path = folder / "photo.jpg"
-    Image.new("RGB", (zoom * source["width_px"], source["height_px"])).save(path)
-    path.write_bytes(path.read_bytes()[:until])
-    with pytest.raises(InputError, match=f"E189 .*{said}") as viewed:
-        ds.view(folder)
-    with pytest.raises(InputError, match=f"E189 .*{said}") as printed:
-        FORMATS["pdf"].files(ds.read_assembly(folder), ExportSettings())
-    assert str(viewed.value) == str(printed.value)
+    path, unreadable = folder / "photo.jpg", "cannot be read"
+    for zoom, until, said in (
+        (2, None, "something else"),
+        (1, 10, unreadable),
+        (1, -200, unreadable),
+    ):
+        Image.new("RGB", (zoom * source["width_px"], source["height_px"])).save(path)
+        path.write_bytes(path.read_bytes()[:until])
+        with pytest.raises(InputError, match=f"E189 .*{said}") as viewed:
+            ds.view(folder)
+        with pytest.raises(InputError, match=f"E189 .*{said}") as printed:
+            FORMATS["pdf"].files(ds.read_assembly(folder), ExportSettings())
+        assert str(viewed.value) == str(printed.value)

@@ -1,6 +1,5 @@
 """Small walls that were planned, for the tests of the viewer."""
 
-import hashlib
 from functools import cache
 
 import numpy as np
@@ -43,7 +42,3 @@ def written(folder, method="best", px_per_m=None):
     """Write the files of a plan as `drystone plan` does, without pictures."""
     ds.write_plan_folder(result(method, px_per_m), folder)
     return folder
-
-
-def sha256(path):
-    return hashlib.sha256(path.read_bytes()).hexdigest()

@@ -17,7 +17,6 @@ from drystone.drawing.tracing.page import write_outline_page
 from drystone.photo.segment_doubts import Doubt
 from tests.cli import test_pages as pages
 from tests.cli.conftest import run  # noqa: F401 - a fixture
-from tests.drawing.report.test_viewer_browser import Heard, browser  # noqa: F401 - a fixture
 
 playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
 
@@ -28,11 +27,8 @@ def stone(x, y, wide, high, seed, corners=11):
     rng = np.random.default_rng(seed)
     angles = np.sort(np.arange(corners) + rng.uniform(-0.3, 0.3, corners)) * 2 * np.pi / corners
     radii = rng.uniform(0.85, 1.0, corners)
-    return shapely.Polygon(
-        np.column_stack(
-            [x + wide / 2 * radii * np.cos(angles), y + high / 2 * radii * np.sin(angles)]
-        )
-    )
+    across, up = radii * np.cos(angles), radii * np.sin(angles)
+    return shapely.Polygon(np.column_stack([x + wide / 2 * across, y + high / 2 * up]))
 
 
 LEFT, RIGHT = stone(120, 100, 130, 120, 1), stone(244, 100, 112, 120, 2)
@@ -61,22 +57,13 @@ def found_rings():
 
 
 @pytest.fixture
-def visit(browser, tmp_path):  # noqa: F811
-    """Open the page; in the end nothing was complained about and no host was asked."""
+def opened(visit, tmp_path):
+    """Open the page of the photograph with what was found on it."""
     path = tmp_path / "outlines.html"
     doubt = Doubt("W175", (1,), (186.0, 100.0), "stone 1 may be two")
     about = {"title": "Stones", "name": "pile.jpg", "kind": "stones"}
     write_outline_page(path, photograph(), found_rings(), **about, doubts=(doubt,))
-    contexts, heard = [], Heard()
-
-    def opened(**context):
-        contexts.append(browser.new_context(accept_downloads=True, **context))
-        return heard.page(contexts[-1], path)
-
-    yield opened
-    for context in contexts:
-        context.close()
-    heard.check()
+    return lambda **context: visit(path, accept_downloads=True, **context)
 
 
 def take(page, name):
@@ -96,13 +83,12 @@ class View:
     def __init__(self, page, width=WIDTH, height=HEIGHT):
         self.page = page
         self.box = page.locator("canvas").bounding_box()
-        k = 0.98 * min(self.box["width"] / width, self.box["height"] / height)
-        self.k = k
-        self.left = self.box["x"] + self.box["width"] / 2 - k * width / 2
-        self.top = self.box["y"] + self.box["height"] / 2 - k * height / 2
+        self.k = 0.98 * min(self.box["width"] / width, self.box["height"] / height)
+        self.middle = width / 2, height / 2
 
     def __call__(self, x, y):
-        return self.left + self.k * x, self.top + self.k * y
+        left, top = self.box["x"] + self.box["width"] / 2, self.box["y"] + self.box["height"] / 2
+        return left + self.k * (x - self.middle[0]), top + self.k * (y - self.middle[1])
 
     def drag(self, points):
         mouse = self.page.mouse
@@ -170,8 +156,8 @@ GAP = [(187, 20), (187, 180)]
 OUTLINE = [*MISSED.exterior.coords]
 
 
-def test_corrected_with_the_mouse_and_read(visit, run, tmp_path):  # noqa: F811
-    page = visit(viewport={"width": 1280, "height": 800})
+def test_corrected_with_the_mouse_and_read(opened, run, tmp_path):  # noqa: F811
+    page = opened(viewport={"width": 1280, "height": 800})
     says(page, "7 stones")
     view = View(page)
     page.mouse.click(*view(420, 470))  # the ground: only the frame lies there
@@ -203,8 +189,8 @@ def test_corrected_with_the_mouse_and_read(visit, run, tmp_path):  # noqa: F811
     assert read["total_area_px"] == pytest.approx(sum(one.area for one in TRUTH), rel=0.03)
 
 
-def test_corrected_with_fingers(visit):
-    page = visit(viewport={"width": 820, "height": 1180}, has_touch=True, is_mobile=True)
+def test_corrected_with_fingers(opened):
+    page = opened(viewport={"width": 820, "height": 1180}, has_touch=True, is_mobile=True)
     view = View(page)
     for x, y in ((420, 470), (430, 180)):
         page.touchscreen.tap(*view(x, y))
@@ -224,8 +210,8 @@ def test_corrected_with_fingers(visit):
     check(saved(page), 800)
 
 
-def test_corrected_with_keys_alone(visit):
-    page = visit(viewport={"width": 1280, "height": 800})
+def test_corrected_with_keys_alone(opened):
+    page = opened(viewport={"width": 1280, "height": 800})
     view = View(page)
     page.keyboard.press("n")
     playwright.expect(page.locator(".said")).to_have_text("Stone 1 may be two.")
@@ -256,9 +242,9 @@ def test_corrected_with_keys_alone(visit):
     check(saved(page), 800)
 
 
-def test_what_is_shown_is_what_there_is(visit):
+def test_what_is_shown_is_what_there_is(opened):
     """Photograph and stones are painted anew when they change, and the line over them always."""
-    page = visit(viewport={"width": 720, "height": 480})
+    page = opened(viewport={"width": 720, "height": 480})
     view, canvas = View(page), page.locator("canvas")
     page.keyboard.press("d")
 
@@ -296,8 +282,8 @@ def test_what_is_shown_is_what_there_is(visit):
     assert len(set(seen)) == len(seen)
 
 
-def test_a_stone_that_is_redrawn_or_numbered_keeps_its_number(visit):
-    page = visit(viewport={"width": 1280, "height": 800})
+def test_a_stone_that_is_redrawn_or_numbered_keeps_its_number(opened):
+    page = opened(viewport={"width": 1280, "height": 800})
     view = View(page)
     page.mouse.click(*view(130, 350))
     page.get_by_label("number").fill("99")
@@ -316,10 +302,10 @@ def test_a_stone_that_is_redrawn_or_numbered_keeps_its_number(visit):
     assert shapely.Polygon(shapes["99"]).symmetric_difference(shapely.Polygon(corners)).area < 150
 
 
-def test_a_wall_is_traced_and_analysed(browser, run, tmp_path):  # noqa: F811
-    wall, folder, heard = pages.photograph(tmp_path / "wall.jpg"), tmp_path / "wall", Heard()
+def test_a_wall_is_traced_and_analysed(visit, run, tmp_path):  # noqa: F811
+    wall, folder = pages.photograph(tmp_path / "wall.jpg"), tmp_path / "wall"
     assert run("trace", wall, "-o", folder).code == 0
-    page = heard.page(browser.new_context(accept_downloads=True), folder / "outlines.html")
+    page = visit(folder / "outlines.html", accept_downloads=True)
     view = View(page, pages.WIDTH, pages.HEIGHT)
     page.keyboard.press("d")
     for corners in pages.TRACED:
@@ -347,11 +333,10 @@ def test_a_wall_is_traced_and_analysed(browser, run, tmp_path):  # noqa: F811
     assert re.search(r"own weight +stands.*^F_LR +0\.[4-9]", ran.out, re.MULTILINE | re.DOTALL)
     assert "2.59 m wide, 1.24 m high" in ran.out
     assert "The ground was drawn: the wall is turned by 0.00 degrees" in ran.err
-    heard.check()
 
 
-def test_axe_has_no_serious_finding(visit):
-    page = visit(viewport={"width": 1280, "height": 800})
+def test_axe_has_no_serious_finding(opened):
+    page = opened(viewport={"width": 1280, "height": 800})
     axe = pytest.importorskip(
         "axe_playwright_python.sync_playwright", reason="axe-playwright-python is not installed"
     ).Axe()

@@ -1,13 +1,17 @@
-"""What is said of a wall first."""
+"""What is said of a wall first, and of how wide the gaps are that are closed."""
 
 import numpy as np
 import pytest
 
+from drystone.contacts.blocks import model_from_labels
+from drystone.contacts.gaps import settle_gaps
 from drystone.contacts.given import model_from_json
 from drystone.drawing.words.analysis import ModelledWall, judge_wall
+from drystone.drawing.words.modelling import gap_spread
 from drystone.statics.failing.mechanism import Names
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
+from tests.contacts.test_gaps import bond
 
 TALL, LOW = [[0, 0, 1, 2]], [[0, 0, 4, 1]]
 LEANING = [[0, 0, 2, 1], [-0.5, 1, 2, 2], [10, 0, 2, 1], [10.5, 1, 2, 2]]
@@ -49,9 +53,27 @@ def test_a_wall_is_judged_in_words(blocks, more, stands, words):
 
 
 def test_what_no_solver_could_answer_is_not_judged():
-    model = model_from_json({"blocks_xywh": TALL})
     failed = LimitResult(LimitStatus.FAILED, "left")
-    wall = ModelledWall(model, np.ones((1, 1)), Names())
+    wall = ModelledWall(model_from_json({"blocks_xywh": TALL}), np.ones((1, 1)), Names())
     stands, said = judge_wall("1 stone", wall, LateralResistance(failed, failed, 0.6))
     assert stands is None
     assert "no answer could be certified" in said
+
+
+def test_the_spread_says_what_the_reach_decides():
+    labels = bond(6, 20, 38, 2)
+    assert gap_spread(labels, 2) == (
+        "F_LR .596 with gaps up to 2 px closed (unstable with gaps up to 1 px closed,"
+        " .596 with gaps up to 4 px closed)"
+    )
+    settled, left, right = (
+        lateral_resistance(model_from_labels(settle_gaps(labels, push)[0]).model).value
+        for push in (None, "left", "right")
+    )
+    assert gap_spread(labels, None) == (
+        f"F_LR {settled:.3f} with stones settled ({left:.3f} with stones pushed left,"
+        f" {right:.3f} with stones pushed right)"
+    ).replace("0.", ".")
+    stack = np.kron([[1], [0], [2]], np.ones((2, 8), int))
+    without = gap_spread(stack, 2, mu=0.0)
+    assert without.startswith("F_LR not defined with gaps up to 2 px closed (unstable")

@@ -1,20 +1,29 @@
 """`drystone bench`."""
 
+import json
+
 import pytest
 
 from drystone_lab import shear
 from drystone_lab.commands import bench
-from drystone_lab.suites import GOES_BY, HISTORY, PUBLIC
+from drystone_lab.suites import GOES_BY, HISTORY, PUBLIC, SUITES
 from drystone_lab.table import Table
+from tests.lab.runs.bricks import picture
 
 
-def test_a_suite_is_printed_and_has_a_folder_for_pictures(tmp_path, run, monkeypatch):
+def test_a_suite_is_printed_has_a_folder_for_pictures_and_fails_for_a_miss(
+    tmp_path, run, monkeypatch
+):
     monkeypatch.setattr(shear, "predict", lambda *_: shear.ShearForces(20.0, 10.0))
     ran = run("bench", "shear", "--quick", "-o", tmp_path / "new")
     assert ran.code == 0
     assert "predicted over measured" in ran.out
     assert (tmp_path / "new").is_dir()
     assert "E129" in run("bench", "shear", "--quick", "-o", __file__).err
+    table = Table("Cases", ("case", "verdict"), (("one", "pass"), ("other", "miss")))
+    monkeypatch.setattr(bench, "run_suite", lambda *_: (table,))
+    assert run("bench", "statics").code == 5
+    assert run("bench", "statics", "--markdown").out.startswith("**Cases**")
 
 
 def test_walls_say_that_data_is_missing(tmp_path, run, monkeypatch):
@@ -23,13 +32,6 @@ def test_walls_say_that_data_is_missing(tmp_path, run, monkeypatch):
         ran = run("bench", "walls", *options)
         assert ran.code == 0
         assert "Rows need the published stone sets" in ran.out
-
-
-def test_a_miss_is_a_failed_check(run, monkeypatch):
-    table = Table("Cases", ("case", "verdict"), (("one", "pass"), ("other", "miss")))
-    monkeypatch.setattr(bench, "run_suite", lambda *_: (table,))
-    assert run("bench", "statics").code == 5
-    assert run("bench", "statics", "--markdown").out.startswith("**Cases**")
 
 
 def test_searches_are_kept_and_not_done_again(run, tmp_path):
@@ -84,3 +86,63 @@ def test_options_that_a_suite_does_not_go_by(who, given, run, tmp_path, monkeypa
 )
 def test_options_that_make_no_sense(options, named, run):
     run("bench", *options).refused("E138", named)
+
+
+BRICKS = ("bench", "--suite", "bricks", "--quick", "--seeds", "1", "--policy", "paper", "random")
+
+
+def test_suites_and_policies_are_named_once(run):
+    lines = run("bench", "--list").out.splitlines()
+    names = [name for line in lines for name in line.split(":")[0].split(", ")]
+    assert names[: len(SUITES)] == list(SUITES)
+    assert {"masons", "fourier", "all"} <= set(names)
+    assert {"paper", "random", "lowest", "scalarised", "filter", "towers", "best"} <= set(names)
+    assert len(set(names)) == len(names)
+
+
+def test_both_spellings_are_the_same(run):
+    ran = run(*BRICKS, "--json")
+    assert (ran.code, "2 of 2 walls" in ran.err) == (0, True)
+    named, positional = (
+        {title: rows for title, rows in tables.items() if not title.startswith("Seconds")}
+        for tables in (ran.json(), run("bench", "bricks", *BRICKS[3:], "--json").json())
+    )
+    assert any(title.startswith("Ranking") for title in named)
+    assert named == positional
+    walls = named["Walls: mean over seeds, standard deviation (±), best"]
+    assert walls[0]["placed share"] == 1.0
+
+
+def test_settings_hold_for_all(run, tmp_path):
+    settings = tmp_path / "full.toml"
+    settings.write_text('sampling = "full"\n', encoding="utf-8")
+    ran = run(*BRICKS, "--settings", settings, "--store", tmp_path / "store")
+    assert ran.code == 0
+    plans = [json.loads(path.read_text()) for path in (tmp_path / "store" / "runs").iterdir()]
+    assert {plan["plan"]["settings"]["sampling"] for plan in plans} == {"full"}
+    settings.write_text("ban = [1]\n", encoding="utf-8")
+    assert "E138" in run(*BRICKS, "--settings", settings).err
+
+
+def test_a_store_has_a_history(run, tmp_path):
+    store = tmp_path / "store"
+    assert "E138" in run("bench", "--history").err
+    assert "no runs" in run("bench", "--history", "--store", store).err
+    assert run(*BRICKS, "--store", store).code == 0
+    assert {path.name for path in store.iterdir()} >= {"runs.csv", "runs"}
+    ran = run("bench", "--history", "--store", store, "--json", "-o", tmp_path / "pictures")
+    (rows,) = ran.json().values()
+    found = [(row["suite"], row["method"], row["runs"]) for row in rows]
+    assert found == [("bricks/1", "paper", 1), ("bricks/1", "random", 1)]
+    drawn = tmp_path / "pictures" / "history-bricks-1.png"
+    assert drawn.read_bytes().startswith(b"\x89PNG")
+    assert "no runs of 'masons'" in run("bench", "masons", "--history", "--store", store).err
+
+
+@pytest.mark.parametrize("suite", ["masons", "walls"])
+def test_other_stones_in_the_place_of_the_masons(suite, run, tmp_path):
+    other, store = picture(tmp_path / "data" / "almeida" / "PR.png"), tmp_path / "store"
+    kept = ("--store", store) if suite == "masons" else ()
+    ran = run("bench", suite, "--quick", "--data", tmp_path / "data", *kept)
+    ran.refused(f"E160 {other}", "drystone fetch almeida", exit_code=3)
+    assert not [path for path in store.rglob("*") if path.is_file()]

@@ -5,13 +5,8 @@ import hashlib
 import pytest
 
 from drystone.errors import UsageError
-from drystone_lab.public.suites import (
-    PUBLIC_SUITES,
-    SUITE_VERSION,
-    flat_changes,
-    method_named,
-    walls_of,
-)
+from drystone_lab.public import suites
+from drystone_lab.public.suites import flat_changes, method_named, walls_of
 
 GENERATED = [wall for wall in walls_of("all") if wall.source.kind != "published"]
 
@@ -21,14 +16,12 @@ FIXED = {1: "067eeec5f51964e1"}  # 5a630340fd2a3ede before the suite "noise" was
 
 def test_nothing_changes_without_a_new_version():
     made = ("kind", "name", "seed", "settings")
-    text = repr(
-        [
-            (wall.suite, wall.name, *(getattr(wall.source, name) for name in made),
-             float(wall.width), float(wall.height), wall.scale)
-            for wall in walls_of("all")
-        ]
-    )  # fmt: skip
-    assert hashlib.sha256(text.encode()).hexdigest()[:16] == FIXED[SUITE_VERSION]
+    text = repr([
+        (wall.suite, wall.name, *(getattr(wall.source, name) for name in made),
+         float(wall.width), float(wall.height), wall.scale)
+        for wall in walls_of("all")
+    ])  # fmt: skip
+    assert hashlib.sha256(text.encode()).hexdigest()[:16] == FIXED[suites.SUITE_VERSION]
 
 
 AREAS_PX = {
@@ -60,7 +53,7 @@ def test_published_stones_are_there(data_dir):
 
 
 def test_all_walls_and_some_alone():
-    names = {suite: [wall.name for wall in walls_of(suite)] for suite in PUBLIC_SUITES}
+    names = {suite: [wall.name for wall in walls_of(suite)] for suite in suites.PUBLIC_SUITES}
     some = [wall.name for wall in walls_of("fourier", ["fourier 60"])]
     assert some == ["fourier 60 round", "fourier 60 long"]
     assert [wall.name for wall in walls_of("sizes", quick=True)] == ["sizes 20"]
@@ -69,13 +62,13 @@ def test_all_walls_and_some_alone():
     every = names.pop("all")
     assert len(set(every)) == len(every)
     assert [name for part in names.values() for name in part] == every
-    assert all(wall.suite in PUBLIC_SUITES for wall in walls_of("all"))
+    assert all(wall.suite in suites.PUBLIC_SUITES for wall in walls_of("all"))
 
 
 WALL = walls_of("bricks")[0]
 
 
-def test_only_the_choice_differs_and_best_is_one_pass_on_outlines():
+def test_only_the_choice_differs_and_settings_are_replaced_for_all_alike():
     paper = method_named("paper").run(WALL, 3).settings()
     for name in ("random", "lowest", "scalarised", "filter", "towers"):
         own = method_named(name).run(WALL, 3).settings()
@@ -83,9 +76,6 @@ def test_only_the_choice_differs_and_best_is_one_pass_on_outlines():
         assert own.updated({"selection_rule": "algorithm2"}) == paper
     best = method_named("best").run(WALL, 3).settings()
     assert (best.geometry, best.search.budget, best.selection_rule) == ("exact", 1, "score")
-
-
-def test_settings_are_replaced_for_all_alike():
     changes = flat_changes({"sampling": "full", "placement": {"beta": 0.5}}, "x.toml")
     for name in ("paper", "random", "best"):
         settings = method_named(name, changes).run(WALL, 0).settings()

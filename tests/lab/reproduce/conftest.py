@@ -1,4 +1,4 @@
-"""Items on small walls, made once a module: `MADE` of the module, its runs kept in a folder."""
+"""Items on small walls: runs are kept in a folder for all of a module."""
 
 import pytest
 
@@ -8,11 +8,6 @@ from tests.lab.reproduce.small_walls import context
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
     return tmp_path_factory.mktemp("runs")
-
-
-@pytest.fixture(scope="module")
-def output(request, here):
-    return request.module.MADE.make(here)
 
 
 @pytest.fixture(scope="module")

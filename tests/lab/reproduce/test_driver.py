@@ -1,4 +1,4 @@
-"""Items are made, kept, reported; walls that were planned are not planned again."""
+"""Items are made, kept and reported on pages; walls are not planned again."""
 
 import json
 from dataclasses import replace
@@ -8,14 +8,17 @@ import pytest
 
 from drystone.errors import InputError, UsageError
 from drystone_lab.reproduce.driver import EVERY_S, ItemProgress, Options, reproduce
+from drystone_lab.reproduce.page import LONG, duration, heading, write_item_page, write_page
 from drystone_lab.runs.outcome import one_by_one
+from drystone_lab.table import written
+from tests.drawing.report.test_report import Page
 from tests.lab.reproduce import fakes
 
 OPTIONS = Options(now=lambda: datetime(2026, 1, 2, 3, 4, tzinfo=UTC))
 
 
-def make(folder, *names, options=OPTIONS, items=fakes.ITEMS):
-    return list(reproduce(names, folder, options, items))
+def make(folder, *names, items=fakes.ITEMS, **options):
+    return list(reproduce(names, folder, replace(OPTIONS, **options), items))
 
 
 def names_in(folder):
@@ -26,23 +29,13 @@ def page_of(folder):
     return (folder / "index.html").read_text("utf-8")
 
 
-def test_an_item_has_its_files(tmp_path):
-    (made,) = make(tmp_path, "fig5")
+def test_an_item_has_its_files_and_its_json_says_what_was_run_with_what(tmp_path):
+    (made,) = make(tmp_path, "fig5", seed=7)
     assert (made.status, made.error) == ("made", None)
     assert made.page == tmp_path / "fig5" / "index.html"
     files = {"walls.csv", "walls_times.csv", "filling.png", "filling.svg"}
     assert names_in(tmp_path / "fig5") == {"fig5.json", "index.html", *files}
     assert names_in(tmp_path) == {"fig5", "index.html", "reproduce.json", "runs"}
-    assert len(names_in(tmp_path / "runs")) == 2
-    # Equal seeds give equal tables and pictures.
-    again = tmp_path / "again"
-    make(again, "fig5")
-    for name in files - {"walls_times.csv"}:
-        assert (tmp_path / "fig5" / name).read_bytes() == (again / "fig5" / name).read_bytes()
-
-
-def test_the_json_says_what_was_run_with_what(tmp_path):
-    (made,) = make(tmp_path, "fig5", options=replace(OPTIONS, seed=7))
     found = json.loads((tmp_path / "fig5" / "fig5.json").read_text("utf-8"))
     assert found == made.record
     assert (found["title"], found["section"]) == ("filling of bricks", "§3.4")
@@ -60,58 +53,52 @@ def test_the_json_says_what_was_run_with_what(tmp_path):
     # Words take what was found; a caption is that of the longest name.
     assert table["notes"] == ["Of bricks."]
     assert [picture["caption"] for picture in found["pictures"]] == ["Filling over 7."]
+    # Equal seeds give equal tables and pictures.
+    again = tmp_path / "again"
+    make(again, "fig5", seed=7)
+    for name in files - {"walls_times.csv"}:
+        assert (tmp_path / "fig5" / name).read_bytes() == (again / "fig5" / name).read_bytes()
 
 
-def test_what_is_finished_is_not_made_again(tmp_path):
-    item, contexts = fakes.counted(fakes.FILLING)
-    items = {"fig5": item}
-    (first,), (made,) = (make(tmp_path, "fig5", items=items) for _ in range(2))
-    assert (made.status, len(contexts)) == ("kept", 1)
-    assert made.record == first.record
-    for count, changed in enumerate(({}, {"quick": True}, {"quick": True, "again": True}), 2):
-        options = replace(OPTIONS, seed=2, **changed)
-        assert make(tmp_path, "fig5", items=items, options=options)[0].status == "made"
-        assert len(contexts) == count
-
-
-def test_a_file_that_is_gone_is_made_again(tmp_path):
-    make(tmp_path, "fig5")
-    (tmp_path / "fig5" / "filling.svg").unlink()
-    assert make(tmp_path, "fig5")[0].status == "made"
-    (tmp_path / "fig5" / "fig5.json").write_text('{"schema": "drystone-item/1", "cut sh')
-    assert make(tmp_path, "fig5")[0].status == "made"
-    assert make(tmp_path, "fig5")[0].status == "kept"
-
-
-def test_planned_walls_are_taken_from_the_folder(tmp_path):
+def test_what_is_finished_is_not_made_again_and_planned_walls_not_planned_again(tmp_path):
     planned = []
 
     def noted(specs, data):
         planned.extend(spec.seed for spec in specs)
         yield from one_by_one(specs, data)
 
-    noting, tables = replace(OPTIONS, work=noted, again=True), set()
-    for _ in range(2):
-        make(tmp_path, "fig5", options=noting)
-        tables.add((tmp_path / "fig5" / "walls.csv").read_bytes())
-    assert planned == [1, 2]
-    assert len(tables) == 1
-    make(tmp_path, "fig5", options=replace(noting, seed=2))
-    assert planned == [1, 2, 3]
+    for status, seeds, options in (
+        ("made", [1, 2], {}),
+        ("kept", [], {}),
+        ("made", [], {"again": True}),
+        ("made", [3], {"seed": 2}),
+        ("made", [], {"seed": 2, "quick": True}),
+        ("made", [], {"seed": 2, "quick": True, "again": True}),
+    ):
+        planned.clear()
+        (made,) = make(tmp_path, "fig5", work=noted, **options)
+        assert (made.status, planned) == (status, seeds)
+    kept = make(tmp_path, "fig5", seed=2, quick=True)[0]
+    assert (kept.status, kept.record) == ("kept", made.record)
 
 
-def test_files_of_an_earlier_version_go(tmp_path):
+def test_a_file_that_is_gone_is_made_again_and_those_of_earlier_versions_go(tmp_path):
     make(tmp_path, "fig5")
-    make(tmp_path, "fig5", items={"fig5": fakes.WORDS})
+    (tmp_path / "fig5" / "filling.svg").unlink()
+    assert make(tmp_path, "fig5")[0].status == "made"
+    (tmp_path / "fig5" / "fig5.json").write_text('{"schema": "drystone-item/1", "cut sh')
+    assert make(tmp_path, "fig5")[0].status == "made"
+    assert make(tmp_path, "fig5")[0].status == "kept"
+    # Files of an earlier version go, those of others stay.
     (tmp_path / "mine.txt").write_text("mine")
-    make(tmp_path, "fig5", items={"fig5": fakes.WORDS}, options=replace(OPTIONS, again=True))
+    make(tmp_path, "fig5", items={"fig5": fakes.WORDS}, again=True)
     assert names_in(tmp_path / "fig5") == {"fig5.json", "index.html"}
     assert (tmp_path / "mine.txt").is_file()
 
 
 def test_items_add_up_in_the_order_of_the_paper(tmp_path):
     make(tmp_path, "beta")
-    make(tmp_path, "fig5", options=replace(OPTIONS, quick=True))
+    make(tmp_path, "fig5", quick=True)
     page, alone = page_of(tmp_path), page_of(tmp_path / "fig5")
     assert page.index('<h2 id="fig5">') < page.index('<h2 id="beta">')
     assert 'src="fig5/filling.png"' in page
@@ -130,31 +117,28 @@ def test_published_stones_that_are_not_there(tmp_path):
     assert "published stones" in page_of(out)
 
     fakes.lay_needed(data)
-    assert make(out, "fig13", options=replace(OPTIONS, data=data))[0].status == "made"
+    assert make(out, "fig13", data=data)[0].status == "made"
     assert "Not made" not in page_of(out)
     # What was made with them stays when they are gone, unless something else is asked for.
     assert make(out, "fig13")[0].status == "kept"
-    assert make(out, "fig13", options=replace(OPTIONS, seed=3))[0].error is not None
+    assert make(out, "fig13", seed=3)[0].error is not None
     assert "Not made" in page_of(out)
     assert "Only words" in page_of(out)
     make(out, "fig13")
     assert "Not made" not in page_of(out)
 
 
-def test_an_error_stops_one_item(tmp_path):
-    failed, after = make(tmp_path, "figB33", "beta")
+def test_an_error_stops_one_item_and_an_interrupt_keeps_what_is_finished(tmp_path):
+    failed, after = make(tmp_path / "one", "figB33", "beta")
     assert (failed.status, after.status) == ("failed", "made")
     assert failed.error.code == "E104"
-    assert "E104 broken: there are no stones. Look for some." in page_of(tmp_path)
-    assert "Appendix B.1" in page_of(tmp_path)
-    assert len(names_in(tmp_path / "runs")) == 2
-
-
-def test_an_interrupt_keeps_what_is_finished(tmp_path):
+    page = page_of(tmp_path / "one")
+    assert "E104 broken: there are no stones. Look for some." in page
+    assert "Appendix B.1" in page
     with pytest.raises(KeyboardInterrupt):
-        make(tmp_path, "beta", "fig17")
-    assert '<h2 id="beta">' in page_of(tmp_path)
-    assert len(names_in(tmp_path / "runs")) == 2
+        make(tmp_path / "other", "beta", "fig17")
+    assert '<h2 id="beta">' in page_of(tmp_path / "other")
+    assert [len(names_in(tmp_path / name / "runs")) for name in ("one", "other")] == [2, 2]
 
 
 @pytest.mark.parametrize("mark", [None, "{}", "no json", '{"schema": "drystone-plan/1"}'])
@@ -177,3 +161,80 @@ def test_walls_are_told_of_now_and_then():
         progress.walls(text)
     assert [line.split(": ")[-1] for line in said[1:]] == ["1", "3", "4"]
     assert said[-1].startswith("[1:01:04] ")
+
+
+ORDER = ("fig5", "fig13", "table2")
+
+
+def table(name, rows):
+    return {
+        "name": name, "file": f"{name}.csv", "title": f"Table of {name}",
+        "columns": ["wall", "F_SF <share>"], "rows": [["R", 0.123456789 + k] for k in range(rows)],
+        "notes": ["A note & more."],
+    }  # fmt: skip
+
+
+def record(name, *, quick=False, seed=1):
+    return {
+        "name": name, "title": "walls <of> stones", "section": "§5.1",
+        "request": {"version": "9.8", "quick": quick, "seed": seed},
+        "made": {
+            "date": f"2026-01-0{seed} 10:00 UTC", "machine": "Linux x86_64, 2 cores",
+            "python": "3.11.7", "kernels": "compiled", "packages": {"numpy": "2.4"},
+        },
+        "taken": {"seconds": 1.0, "walls": 20, "wall_seconds": 90.0},
+        "paper": ["F_SF is .88 & more."], "ours": ["It is .89 here."],
+        "tables": [table("short", 2), table("long", LONG + 1)], "times": [table("t_times", 1)],
+        "pictures": [
+            {"name": "p", "png": "p.png", "svg": "p.svg", "width_px": 1000, "height_px": 500,
+             "caption": "Walls of 'R'."},
+        ],
+    }  # fmt: skip
+
+
+def test_the_report_of_all_and_of_one(tmp_path):
+    records = [record("table2", quick=True, seed=3), record("fig5")]
+    misses = {"fig13": {"title": "masons", "section": "§5.1", "error": "E100 R.png: is not there."}}
+    path = write_page(tmp_path / "index.html", records, misses, ORDER)
+    page = Page(path.read_text(encoding="utf-8"))
+    # In the order of the paper
+    heads = [attributes["id"] for attributes in page.all("h2") if "id" in attributes]
+    assert heads == ["contents", *ORDER]
+    links = [attributes["href"] for attributes in page.all("a")]
+    assert links[:3] == [f"#{name}" for name in ORDER]
+    assert "Fig. 5: walls <of> stones" in page.text
+    assert "F_SF is .88 & more." in page.text
+    assert page.text.index("In the paper") < page.text.index("It is .89 here.")
+    # What it was made with
+    assert (
+        "2 of 3 were made, 1 as quick versions and 1 in full, with drystone 9.8, "
+        "2026-01-01 to 2026-01-03, on Linux x86_64, 2 cores." in page.text
+    )
+    assert "20 walls planned in 1 min 30 s" in page.text
+    assert "40 in 3 min 0 s" in page.text
+    assert "E100 R.png: is not there." in page.text
+    # Files are linked where they are, and pictures have texts.
+    assert [image["src"] for image in page.all("img")] == ["fig5/p.png", "table2/p.png"]
+    for image in page.all("img"):
+        assert "Walls of 'R'." in image["alt"]
+        assert (image["width"], image["height"]) == ("1000", "500")
+    files = ("p.png", "p.svg", "short.csv", "long.csv", "t_times.csv", "fig5.json")
+    assert {f"fig5/{file}" for file in files} <= {*links}
+    assert not any("://" in link for link in links)
+    # Long tables are folded.
+    assert len(page.all("details")) == 1 + 2  # what it was made with, and one an item
+    assert f"Table of long ({LONG + 1} rows)" in page.text
+    assert "0.12346" in page.text
+    assert "0.123456789" not in page.text
+    one = Page(write_item_page(tmp_path / "one.html", record("fig5")).read_text(encoding="utf-8"))
+    assert one.all("a")[0]["href"] == "../index.html#fig5"
+    assert [image["src"] for image in one.all("img")] == ["p.png"]
+
+
+def test_words():
+    assert heading("table2", "walls") == "Table 2: walls"
+    assert heading("figB30-32", "x") == "Fig. B.30\N{EN DASH}32: x"
+    assert heading("beta", "the threshold") == "The threshold"
+    cells = [written(value) for value in (0.0, False, 1e-4, 123456.7)]
+    assert cells == ["0", "no", "1.0e-04", "1.2346e+05"]
+    assert [duration(seconds) for seconds in (59.97, 3600)] == ["1 min 0 s", "1 h 0 min"]

@@ -9,14 +9,7 @@ from PIL import Image
 from drystone.contacts.blocks import model_from_labels
 from drystone.metrics.measure import measure_labels
 from drystone.statics.limit import lateral_resistance
-from drystone_lab.reproduce.masons import (
-    best_trial,
-    dilated,
-    drawn_together,
-    masons_wall,
-    tenths,
-    treatments,
-)
+from drystone_lab.reproduce import masons
 from drystone_lab.runs.spec import published
 from drystone_lab.walls import Target
 from tests.lab.reproduce.small_walls import RUBBLE, context, of, on, outcome, rows
@@ -45,24 +38,24 @@ def here(tmp_path_factory, data):
 
 
 @pytest.fixture(scope="module")
-def masons(data):
-    return masons_wall(BLOCKS, data)
+def wall(data):
+    return masons.masons_wall(BLOCKS, data)
 
 
-def test_gaps_are_closed_in_every_way(masons):
-    found = {way.name: way for way in treatments(masons)}
+def test_gaps_are_closed_in_every_way(wall):
+    found = {way.name: way for way in masons.treatments(wall)}
     assert (found["as traced"].F_LR, found["as traced"].status) == (None, "unstable")
     assert found["gaps up to 1 px closed"].status == "optimal"
     papers = found["drawn together and dilated (the paper's way)"]
-    by_hand = lateral_resistance(model_from_labels(masons.papers_way).model).value
+    by_hand = lateral_resistance(model_from_labels(wall.papers_way).model).value
     assert papers.F_LR == by_hand
-    assert (masons.papers_way > 0).sum() > (masons.labels > 0).sum()
+    assert (wall.papers_way > 0).sum() > (wall.labels > 0).sum()
 
 
-def test_fig13(here, masons):
+def test_fig13(here, wall):
     output = of("fig13", (BLOCKS,)).make(here)
     traced, closed, papers = rows(output, "fig13")
-    measured = measure_labels(masons.labels)
+    measured = measure_labels(wall.labels)
     found = traced["F_SF"], traced["F_AV"]
     assert found == pytest.approx((measured.F_SF, measured.F_AV), abs=1e-4)
     assert traced["F_LR"] is None
@@ -97,7 +90,7 @@ def test_table2(here):
     mine = {row["what"].split(",")[0]: row for row in table if row["wall"] == 1}
     most = (np.asarray(Image.open(here.data / "blocks.png")) > 0).sum() / (66 * 32)
     for what, expected in {
-        "best of 2": filled[best_trial(outcomes)], "fixed seed": filled[0],
+        "best of 2": filled[masons.best_trial(outcomes)], "fixed seed": filled[0],
         "fullest of 2": max(filled), "all stones": most,
     }.items():  # fmt: skip
         assert mine[what]["F_SF"] == pytest.approx(expected, abs=1e-4)
@@ -127,24 +120,19 @@ def test_table2(here):
     ],
 )
 def test_the_best_trial(walls, best):
-    assert best_trial([outcome(F_LR=value, F_SF=filled) for value, filled in walls]) == best
+    assert masons.best_trial([outcome(F_LR=value, F_SF=filled) for value, filled in walls]) == best
     # Halves are rounded up whatever the solver leaves.
-    assert [tenths(value) for value in (0.05, 0.15, 0.25, 0.35, 0.45, 0.55)] == [1, 2, 3, 4, 5, 6]
-    assert tenths(0.35 - 1e-12) == tenths(0.35 + 1e-12) == 4
+    for tenth, value in enumerate((0.05, 0.15, 0.25, 0.35, 0.45, 0.55), 1):
+        assert masons.tenths(value - 1e-12) == masons.tenths(value + 1e-12) == tenth
 
 
-def _blocks():
-    labels = np.zeros((12, 30), np.uint32)
-    labels[7:11, 3:9] = 5
-    labels[6:11, 12:19] = 2
-    labels[1:4, 5:15] = 9
-    labels[2:5, 20:27] = 300
-    return labels
+APART = np.zeros((12, 30), np.uint32)
+APART[7:11, 3:9], APART[6:11, 12:19], APART[1:4, 5:15], APART[2:5, 20:27] = 5, 2, 9, 300
 
 
 def test_stones_keep_their_shape_and_come_nearer_until_they_are_stopped():
-    before = _blocks()
-    after = drawn_together(before)
+    before = APART.copy()
+    after = masons.drawn_together(before)
     assert after.dtype == before.dtype
     corner = (before.shape[0] - 0.5, -0.5)
     for block in (5, 2, 9, 300):
@@ -153,16 +141,13 @@ def test_stones_keep_their_shape_and_come_nearer_until_they_are_stopped():
         was, now = (np.hypot(*(pixels.mean(axis=0) - corner)) for pixels in (old, new))
         assert now <= was
     # The first goes into the corner, the second on top of it; the third ends beside that one.
-    assert np.argwhere(after == 5).min(axis=0).tolist() == [8, 0]
-    assert np.argwhere(after == 9).min(axis=0).tolist() == [5, 0]
-    assert np.argwhere(after == 2).min(axis=0).tolist() == [7, 10]
+    for block, corner in ((5, [8, 0]), (9, [5, 0]), (2, [7, 10])):
+        assert np.argwhere(after == block).min(axis=0).tolist() == corner
 
 
 def test_dilation_is_by_one_pixel_and_takes_nothing_from_others():
-    before = _blocks()
-    after = dilated(before)
-    for row, col in np.ndindex(*before.shape):
-        around = before[max(row - 1, 0) : row + 2, max(col - 1, 0) : col + 2]
-        expected = before[row, col] or min(around[around > 0], default=0)
-        assert after[row, col] == expected
-    assert after.dtype == before.dtype
+    after = masons.dilated(APART)
+    for row, col in np.ndindex(*APART.shape):
+        around = APART[max(row - 1, 0) : row + 2, max(col - 1, 0) : col + 2]
+        assert after[row, col] == (APART[row, col] or min(around[around > 0], default=0))
+    assert after.dtype == APART.dtype

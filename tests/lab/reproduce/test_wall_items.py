@@ -13,9 +13,10 @@ from drystone.model.site import Site
 from drystone.model.wall import Group, Wall
 from drystone.planner.profile import StepTime
 from drystone_lab.reproduce import base_case, noise, other_stones, times, ways
+from drystone_lab.reproduce.other_stones import Brick, bricks_of, courses_of, head_joints
 from drystone_lab.runs.spec import generated
 from drystone_lab.timed_walls import TimedWall
-from drystone_lab.walls import Target
+from drystone_lab.walls import NOISY, Target
 from tests.lab.reproduce.small_walls import of, on, outcome, rows
 
 SEEDS = (1, 2)
@@ -154,20 +155,16 @@ def test_noise(here):
     assert [picture.name for picture in output.pictures] == ["fig22", "fig23", "fig24"]
 
 
-def test_orientations(here):
+def test_orientations_and_gains_told_from_chance(here):
     output = on("fig25", RUBBLE, seeds=1).make(here)
     few, many = rows(output, "walls")
     assert (few["orientations"], many["orientations"]) == ("quarter", "10deg")
     claim = rows(output, "claims")[0]
     assert f"{many['F_SF'] - few['F_SF']:+.3f} in the median" in claim["here"]
     assert claim["agrees"] is None  # one pair tells nothing
-
-
-@pytest.mark.parametrize(("more", "agrees"), [(0.1, True), (0.0, False), (-0.1, False)])
-def test_a_gain_is_told_from_chance(more, agrees):
-    assert noise.gain_of("filling", [more] * 6).holds is agrees
-    assert noise.gain_of("filling", [more] * 4).holds is None
-    assert noise.gain_of("filling", []).holds is None
+    for gains, agrees in (([0.1] * 6, True), ([0.0] * 6, False), ([-0.1] * 6, False),
+                          ([0.1] * 4, None), ([], None)):  # fmt: skip
+        assert noise.gain_of("filling", gains).holds is agrees
 
 
 def test_rounded_stones(here):
@@ -180,20 +177,18 @@ def test_rounded_stones(here):
     assert [picture.name for picture in output.pictures] == ["fig26", "fig27"]
 
 
-@pytest.mark.parametrize(
-    ("firsts", "count", "holds"),
-    [((0.5, 0.6), 5, True), ((0.6, 0.5), 5, False), ((0.5, 0.6), 3, None)],
-)
-def test_more_walls_tell_a_difference(firsts, count, holds):
-    walls = [
-        SimpleNamespace(
-            wall=SimpleNamespace(name=shape),
-            outcomes=[outcome(F_SF=first + k / 100, F_AV=first + k / 100) for k in range(count)],
-        )
-        for shape in other_stones.SHAPES
-        for first in firsts
-    ]
-    assert next(other_stones.rounded_findings(SimpleNamespace(all=walls))).holds is holds
+def test_more_walls_tell_a_difference():
+    for firsts, count, holds in (((0.5, 0.6), 5, True), ((0.6, 0.5), 5, False),
+                                 ((0.5, 0.6), 3, None)):  # fmt: skip
+        walls = [
+            SimpleNamespace(
+                wall=SimpleNamespace(name=shape),
+                outcomes=[outcome(F_SF=one + k / 100, F_AV=one + k / 100) for k in range(count)],
+            )
+            for shape in other_stones.SHAPES
+            for one in firsts
+        ]
+        assert next(other_stones.rounded_findings(SimpleNamespace(all=walls))).holds is holds
 
 
 def test_variants(here):
@@ -206,14 +201,11 @@ def test_variants(here):
         assert all(spec.changes == ways.NAMED.get(one.way, ()) for spec in one.specs)
 
 
-def test_resolutions(here):
+def test_resolutions_stones_and_clusters(here):
     output = of("fig29", RUBBLE, (0.5, 1.0)).make(replace(here, quick=True))
     assert [row["wall, px"] for row in rows(output, "walls")] == ["50 x 20", "100 x 40"]
     assert [name for name, _ in output.times] == ["claims", "released", "pixels"]
     assert [picture.name for picture in output.pictures] == ["fig29", "fig29-time"]
-
-
-def test_stones_and_clusters(here):
     output = of("growth", ((8, 12), (0.1,))).make(replace(here, quick=True))
     found = rows(output, "walls")
     assert [(row["sampling"], row["Q"]) for row in found] == [
@@ -247,3 +239,85 @@ def test_the_times_of_the_authors(data_dir, tmp_path):
     theirs, ours = times.released_rows(data_dir, {"variant": wall})
     assert (*theirs[:4], theirs[-1]) == ("variant", "authors", 32, 812, 286)
     assert ours == ("variant", "ours", 9, 36, 0.09, 0.5, 0.0, 0.5, None)
+
+
+def test_generated_stones_stand_in_for_published_ones_and_are_no_references(data_dir, tmp_path):
+    counts = {wall.number: len(wall.source.stones(data_dir)) for wall in NOISY}
+    assert counts == {10: 28, 20: 23, 30: 22, 40: 26, 50: 27, 60: 23, 70: 25, 80: 18}
+    for wall in NOISY:
+        assert wall.here(data_dir) is wall
+        assert (wall.said, wall.width) == ("published", 0)
+        made = wall.here(tmp_path)
+        assert (made.name, made.number, made.scale) == (wall.name, wall.number, wall.scale)
+        assert made.said == "generated: not in the data folder"
+        stones = made.source.stones(None)
+        assert stones.total_area_px / (made.width * made.height) == pytest.approx(0.696, abs=2e-3)
+    wall = NOISY[1]
+    assert noise.reference_of(wall.here(None), data_dir) is None
+    assert noise.reference_of(wall, None) is None
+    found = noise.reference_of(wall, data_dir).metrics
+    assert found.stones == 23
+    assert found.F_SF == pytest.approx(0.659, abs=5e-4)
+
+
+def two_piers(gap):
+    """A slab on two stones, gap px above them, in an image of 60 x 120 px."""
+    labels = np.zeros((60, 120), np.uint32)
+    labels[40:, :40] = 1
+    labels[40:, 80:] = 2
+    labels[20 - gap : 40 - gap, :] = 3
+    return labels
+
+
+def test_a_reference_is_measured_on_all_of_its_image_with_its_gaps_closed():
+    found = noise.measured(two_piers(0), 0.5)
+    assert found.metrics.stones == 3
+    assert found.metrics.F_SF == pytest.approx((2 * 40 * 20 + 120 * 20) / (60 * 120))
+    assert found.metrics.F_LR is not None
+    assert found.resistances == pytest.approx([found.metrics.F_LR] * 4)
+    found = noise.measured(two_piers(8), 0.5)
+    open_, _, twice, thrice = found.resistances
+    assert open_ is twice is found.metrics.F_LR is None
+    assert thrice is not None
+
+
+def course(foot, *lefts, width=20, height=10):
+    return [Brick(left, left + width, foot, foot + height, True) for left in lefts]
+
+
+def test_a_running_bond_is_crossed_and_bricks_out_of_line_are_in_no_course():
+    low, stack = course(0, 0, 20, 40), course(10, 0, 20, 40)
+    assert courses_of(low + stack, 10, 20).joints == 4
+    # Joints of four px apart are not crossed, of five they are.
+    for upper, crossed in ((stack, 0), (course(10, 10, 30, 50), 4), (course(10, 4, 24), 1),
+                           (course(10, 5, 25), 3)):  # fmt: skip
+        assert courses_of(low + upper, 10, 20).crossed == crossed
+    upright, turned = Brick(0, 10, 0, 20, True), Brick(30, 50, 0, 10, False)
+    found = courses_of([upright, turned, *course(3, 60), *course(10, 80)], 10, 20)
+    assert (found.bricks, found.lying, found.in_course, found.courses) == (4, 2, 1, 1)
+    assert found.joints == 0
+    # A hole is no joint, and the last course needs a brick beside its joints.
+    assert head_joints(course(0, 0, 24, 64)) == [22.0]
+    assert courses_of(course(0, 0, 20), 10, 20).joints == 0
+
+
+def test_planned_bricks_are_read_off_their_wall(here):
+    output = of("figB34", (72, 2)).make(here)
+    found = rows(output, "walls")
+    ways = [(row["built from"], row["aspect"]) for row in found]
+    assert ways == list(product(("one side", "two sides"), (2.0, 3.0)))
+    assert [run.width for run in output.runs] == [72, 72, 72, 72]
+    # Runs have one aspect after the other, rows one side.
+    for run, row in zip(output.runs, (found[0], found[2], found[1], found[3]), strict=True):
+        wall = here.wall(run)
+        boxes = bricks_of(wall)
+        assert row["placed"] == row["lying"] == len(boxes) == 144 // (12 * row["aspect"])
+        for box, placement in zip(boxes, wall.placements, strict=True):
+            pixels = wall.labels[::-1] == placement.stone_id
+            assert pixels[box.bottom : box.top, box.left : box.right].all()
+            assert pixels.sum() == (box.top - box.bottom) * (box.right - box.left)
+    colours = [
+        {patch.get_facecolor() for patch in ax.patches if str(patch.get_gid()).startswith("stone")}
+        for ax in output.pictures[0].figure.axes
+    ]
+    assert [len(each) for each in colours] == [6, 4, 6, 4]

@@ -1,5 +1,7 @@
-"""The environment."""
+"""The environment, the stones that arrive in it, and the walls that are drawn for it."""
 
+import subprocess
+import sys
 from copy import deepcopy
 from dataclasses import replace
 from pathlib import Path
@@ -11,12 +13,24 @@ from gymnasium.utils.env_checker import check_env
 
 import drystone_lab.rl
 from drystone.errors import DrystoneError, UsageError
+from drystone.generate import BrickSettings, brick_stones
 from drystone.model.site import Site
-from drystone.search.goal import WallFigures, merit_of
+from drystone.planner.planner import Planner
+from drystone.search.goal import WallFigures, figures_of, merit_of, possible_filling
+from drystone.selection.policies.choices import LOWEST
 from drystone.selection.policies.learned import FEATURES, features
+from drystone_lab.rl.draw import KINDS, DrawSettings, draw_wall, in_order
 from drystone_lab.rl.env import WallEnv
-from drystone_lab.rl.episode import ARRIVING
-from tests.lab.rl.walls import SMALL, bricks
+from drystone_lab.rl.episode import ARRIVING, Episode, prepared
+
+SMALL = DrawSettings(kinds=("brick", "polygon"), stones=7, size_px=12.0)
+
+
+def bricks(count=6):
+    """Return bricks of 20 x 10 and a wall that the first four of them fill."""
+    settings = BrickSettings(count=count, height_px=10, aspect=2)
+    return brick_stones(settings, np.random.default_rng(1)), Site(40, 20)
+
 
 GIVEN = dict(zip(("stones", "site"), bricks(), strict=True))
 
@@ -58,34 +72,24 @@ def test_rewards_sum_up_to_the_merit_of_the_wall():
         assert info["placed"] + info["aside"] == SMALL.stones
         all_rewards += rewards
     assert min(all_rewards) < 0 < max(all_rewards)
+    # A seed repeats its episode.
+    first, second = (played(env, seed)[2] for seed in (5, 6))
+    assert played(env, 5)[2] == first == played(made(), 5)[2] != second
 
 
-def test_a_seed_repeats_the_episode():
-    env = made()
-    first = played(env, 5)[2]
-    assert played(env, 6)[2] != first
-    assert played(env, 5)[2] == first == played(made(), 5)[2]
-
-
-def test_masks_say_what_is_offered():
+def test_masks_say_what_is_offered_and_another_action_puts_aside_or_is_an_error():
     env = made(offers=20)
     seen, info = env.reset(seed=1)
     count, rows = len(env.episode.offers), seen["offers"]
     assert 0 < count < 20
     assert env.action_masks().dtype == bool
-    assert (
-        env.action_masks().tolist()
-        == info["action_mask"].tolist()
-        == [k < count for k in range(20)]
-    )
+    for mask in (env.action_masks(), info["action_mask"]):
+        assert mask.tolist() == [k < count for k in range(20)]
     assert not rows[count:].any()
     shown = features(env.episode.offers).astype(np.float32)
     assert np.array_equal(rows[:count, : len(FEATURES)], shown)
     played(env, 1)
     assert not env.action_masks().any()
-
-
-def test_illegal_action_puts_the_stone_aside_or_is_an_error_that_changes_nothing():
     env = made(offers=20)
     _, before = env.reset(seed=1)
     _, reward, over, _, info = env.step(np.int64(19))
@@ -151,11 +155,16 @@ def test_reset_refuses(options):
 
 
 @pytest.mark.parametrize(
-    "wrong", [{"offers": 0}, {"columns": 0}, {"illegal": "ignore"}, {"render_mode": "human"}]
-)
-def test_refuses_settings(wrong):
+    ("made", "wrong"),
+    [(WallEnv, wrong) for wrong in
+     ({"offers": 0}, {"columns": 0}, {"illegal": "ignore"}, {"render_mode": "human"})]
+    + [(DrawSettings, wrong) for wrong in
+       ({"kinds": ()}, {"kinds": ("marble",)}, {"stones": 2}, {"size_px": 3.0}, {"surplus": 0.0},
+        {"aspect": 0.0})],
+)  # fmt: skip
+def test_settings_that_are_refused(made, wrong):
     with pytest.raises(UsageError, match="E123"):
-        WallEnv(**wrong)
+        made(**wrong)
 
 
 def test_example_of_the_documents_runs(capsys):
@@ -202,3 +211,83 @@ def test_a_deep_copy_goes_on_by_itself():
     # Both draw the same walls, and neither draws for the other.
     assert equal(wrapped.reset()[0], other.reset()[0])
     assert wrapped.action_space.sample() == other.action_space.sample()
+
+
+def test_builds_the_wall_of_the_planner_with_the_same_policy():
+    settings = replace(ARRIVING, selection_rule="lowest")
+    for seed in range(2):
+        stones, site = draw_wall(SMALL, np.random.default_rng(seed))
+        episode = Episode(prepared(stones, site))
+        while not episode.over:
+            episode.take(LOWEST.choose(episode.offers, np.random.default_rng(0)))
+        planner = Planner(stones, site, settings=settings)
+        list(planner.steps())
+        assert np.array_equal(episode.build.wall.labels, planner.build.wall.labels)
+        possible = possible_filling(planner.workshop)
+        assert episode.merit == merit_of(figures_of(planner.build), possible, settings.goal)
+        assert episode.aside == len(stones) - len(planner.build.actions)
+
+
+def test_a_wall_is_over_when_stones_are_put_aside_for_good_or_it_is_full():
+    episode, seen = Episode(prepared(*bricks(3))), []
+    while not episode.over:
+        assert (episode.aside, episode.build.actions) == (len(seen), ())
+        seen.append(episode.stone_id)
+        episode.take(None)
+    assert sorted(seen) == [1, 2, 3]
+    assert (episode.aside, episode.merit, episode.potential) == (3, 0.0, 0.0)
+    episode = Episode(prepared(*bricks(6)))
+    while not episode.over:
+        lying = [k for k, offer in enumerate(episode.offers) if offer.width_px == 20]
+        episode.take(lying[0])
+    assert episode.build.wall.filling == 1.0
+    assert (len(episode.build.actions), episode.aside, episode.waiting) == (4, 0, 2)
+
+
+def test_keeps_the_lowest_of_the_offers():
+    workshop = prepared(*bricks())
+    every, few = Episode(workshop).offers, Episode(workshop, most=3).offers
+    heights, kept = ([offer.centroid_px[1] for offer in offers] for offers in (every, few))
+    assert len(heights) > 3
+    assert sorted(kept) == sorted(heights)[:3]
+    assert [offer for offer in every if offer in few] == list(few)
+    for position in (-1, len(every)):
+        with pytest.raises(IndexError):
+            Episode(workshop).take(position)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_size_and_surplus_are_those_asked_for(kind):
+    settings = DrawSettings(kinds=(kind,), stones=30, size_px=16.0, surplus=1.3, aspect=2.0)
+    stones, site = draw_wall(settings, np.random.default_rng(3))
+    assert [stone.id for stone in stones] == list(range(1, 31))
+    assert (stones.total_area_px / 30) ** 0.5 == pytest.approx(16.0, rel=0.12)
+    area = site.width_px * site.height_px
+    assert stones.total_area_px / area == pytest.approx(1.3, rel=0.03)
+    assert site.width_px / site.height_px == pytest.approx(2.0, rel=0.03)
+
+
+def test_order_keeps_every_stone():
+    stones = brick_stones(BrickSettings(count=8, halves=4), np.random.default_rng(1))
+    again = in_order(stones, np.random.default_rng(2))
+    widths = [[stone.mask.shape[1] for stone in some] for some in (stones, again)]
+    assert widths[0] != widths[1]
+    assert sorted(widths[0]) == sorted(widths[1])
+
+
+CODE = """
+import sys
+sys.modules["gymnasium"] = None
+from drystone.errors import UsageError
+from drystone.selection.policies.learned import learned
+learned()
+try:
+    import drystone_lab.rl
+except UsageError as error:
+    print(error.code, error.cure)
+"""
+
+
+def test_without_gymnasium_it_says_what_to_install_and_the_policy_needs_none():
+    done = subprocess.run([sys.executable, "-c", CODE], capture_output=True, text=True, check=True)  # noqa: S603
+    assert done.stdout == "E150 Install it with `pip install 'drystone[rl]'`.\n"

@@ -11,7 +11,7 @@ from drystone_lab.rl.evaluate import FIGURES, Interval, figures_by, held_out_wal
 DRAW = DrawSettings(stones=6, size_px=10.0)
 
 
-def test_interval_is_that_of_the_paired_t_test():
+def test_a_report_has_means_and_differences_with_intervals_of_the_paired_t_test():
     rng = np.random.default_rng(1)
     first, second = rng.normal(1.0, 1.0, 12), rng.normal(0.5, 1.0, 12)
     ours = Interval.of((first - second).tolist())
@@ -20,6 +20,13 @@ def test_interval_is_that_of_the_paired_t_test():
     assert ours.mean + ours.half == pytest.approx(theirs.high)
     assert Interval(-0.5, 0.6).text == "-0.500 ± 0.600"  # starred without zero
     assert Interval.of([2.0]).half == np.inf
+    walls = {
+        way: {name: [value, value + 2.0] for name in FIGURES}
+        for way, value in (("one", 1.0), ("two", 0.5))
+    }
+    text = report(walls, "Two walls")
+    for row in ("| one | 2.000 |", "| two | 1.500 |", "| two | +0.500 ± 0.000* |"):
+        assert row in text
 
 
 def test_figures_of_a_policy_are_those_of_its_walls():
@@ -33,16 +40,6 @@ def test_figures_of_a_policy_are_those_of_its_walls():
         parts += goal.vertical * found["F_AV"][k] - goal.horizontal * found["F_AH"][k]
         # Top and ends are left, which count against a wall.
         assert parts - 2.0 < found["merit"][k] <= parts
-
-
-def test_report_has_means_and_differences():
-    walls = {
-        way: {name: [value, value + 2.0] for name in FIGURES}
-        for way, value in (("one", 1.0), ("two", 0.5))
-    }
-    text = report(walls, "Two walls")
-    for row in ("| one | 2.000 |", "| two | 1.500 |", "| two | +0.500 ± 0.000* |"):
-        assert row in text
 
 
 def test_command(capsys):

@@ -11,7 +11,7 @@ from drystone.selection.policies.learned import FEATURES, learned, model_from_js
 from drystone_lab.rl import train
 from drystone_lab.rl.draw import DrawSettings, draw_wall
 from drystone_lab.rl.episode import Episode, prepared
-from tests.lab.rl.walls import bricks
+from tests.lab.rl.test_env import bricks
 
 TINY = train.TrainSettings(
     seed=3, rounds=1, walls=12, validation=6, strength=10.0,
@@ -34,14 +34,11 @@ def test_equal_seeds_equal_bytes():
     assert train.train(replace(short, seed=4)).to_json() != text
 
 
-def test_shipped_weights_beat_random_on_walls_that_were_not_trained_on():
+def test_shipped_weights_are_of_the_settings_of_today_and_beat_random_on_other_walls():
     draw = DrawSettings(kinds=train.TRAINED_ON, stones=9, size_px=12.0)
     walls = [prepared(*draw_wall(draw, np.random.default_rng([9, k]))) for k in range(6)]
     by_value = train.mean_merit(learned().choose, walls)
     assert by_value > train.mean_merit(train.at_random, walls) + 0.3
-
-
-def test_shipped_weights_are_of_the_settings_of_today():
     trained, settings = shipped_model().trained, train.TrainSettings()
     for name in ("seed", "rounds", "walls", "strength"):
         assert trained[name] == getattr(settings, name)
@@ -68,15 +65,18 @@ def test_walls_without_a_choice_teach_nothing(tmp_path):
         train.train(replace(TINY, walls=2, draw=full))
     few = ["-o", str(tmp_path / "w.json"), "--stones", "2"]
     assert train.main(few) == ExitCode.USAGE
+    stones, _ = bricks(3)
+    workshop = prepared(stones, Site(5, 5))
+    assert train.branching(workshop, train.at_random, (1,)) is None
+    assert train.finished(Episode(workshop), train.at_random, np.random.default_rng(0)) == 0.0
 
 
 @pytest.mark.parametrize(
-    "wrong",
-    [["--walls", "0"], ["--seed", "-1"], ["--seed", str(train.HELD_OUT)], ["--rounds", "0"]],
+    "wrong", ["--walls 0", "--seed -1", f"--seed {train.HELD_OUT}", "--rounds 0"]
 )
 def test_command_refuses(wrong, tmp_path):
     with pytest.raises(SystemExit) as caught:
-        train.main(["-o", str(tmp_path / "w.json"), *wrong])
+        train.main(["-o", str(tmp_path / "w.json"), *wrong.split()])
     assert caught.value.code == 2
 
 
@@ -92,16 +92,12 @@ def made(count, weights, noise=0.0):
         yield train.Branching(features, merits)
 
 
-@pytest.mark.parametrize(
-    ("count", "noise", "scale", "off"),
-    [(50, 0.0, (1, 1, 1), 1e-6), (2000, 1.0, (1, 1, 1), 0.06), (50, 0.0, (2.0, 0.5, 1), 1e-6)],
-)
-def test_fit_finds_the_weights_whatever_the_walls_are_worth(count, noise, scale, off):
-    found = train.fitted(list(made(count, WEIGHTS, noise)), np.array(scale, float), 1e-9)
-    assert found / scale == pytest.approx(WEIGHTS, abs=off)
-
-
-def test_fit_is_drawn_to_zero():
+def test_fit_finds_the_weights_whatever_the_walls_are_worth_and_is_drawn_to_zero():
+    for count, noise, scale, off in (
+        (50, 0.0, (1, 1, 1), 1e-6), (2000, 1.0, (1, 1, 1), 0.06), (50, 0.0, (2.0, 0.5, 1), 1e-6)
+    ):  # fmt: skip
+        found = train.fitted(list(made(count, WEIGHTS, noise)), np.array(scale, float), 1e-9)
+        assert found / scale == pytest.approx(WEIGHTS, abs=off)
     data = list(made(50, WEIGHTS))
     assert train.fitted(data, np.ones(3), 1e9) == pytest.approx(np.zeros(3), abs=1e-4)
     # 50 times 4 places less their mean: as many zeros halve them.
@@ -113,10 +109,3 @@ def test_spread_is_within_branchings():
     two = [train.Branching(rows, np.zeros(2)), train.Branching(rows + 10.0, np.zeros(2))]
     assert train.spread_of(two).tolist() == [1.0, 1.0]
     assert train.spread_of([train.Branching(2 * rows, np.zeros(2))]).tolist() == [2.0, 1.0]
-
-
-def test_no_branching_where_no_stone_fits():
-    stones, _ = bricks(3)
-    workshop = prepared(stones, Site(5, 5))
-    assert train.branching(workshop, train.at_random, (1,)) is None
-    assert train.finished(Episode(workshop), train.at_random, np.random.default_rng(0)) == 0.0

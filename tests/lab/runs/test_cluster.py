@@ -3,6 +3,7 @@ import sys
 import threading
 import time
 from importlib.metadata import PackageNotFoundError, version
+from types import SimpleNamespace
 
 import pytest
 
@@ -13,7 +14,6 @@ from drystone_lab.runs.spec import RunSpec, published
 from tests.lab.runs.bricks import NOT_SIX, SOURCE, deadly, kept, picture, run
 
 distributed = pytest.importorskip("distributed", reason="the extra `dask` is not installed")
-
 
 QUIET = {
     "threads_per_worker": 1,
@@ -142,64 +142,45 @@ def test_published_stones_where_the_worker_has_them(tmp_path, monkeypatch):
         execute_there(spec, tmp_path / "elsewhere")
 
 
-class Workers:
-    """A client that knows versions."""
-
-    def __init__(self, scheduler, **workers):
-        self.scheduler, self.workers = scheduler, workers
-
-    def run(self, function, name, *, on_error):
-        assert (function, name, on_error) == (version, "drystone", "return")
-        return {at: one or PackageNotFoundError(name) for at, one in self.workers.items()}
-
-    def run_on_scheduler(self, function, name):
-        assert (function, name) == (version, "drystone")
-        if self.scheduler is None:
-            raise PackageNotFoundError(name)
-        return self.scheduler
-
-
 HERE = version("drystone")
 
 
 @pytest.mark.parametrize(
-    ("client", "said"),
+    ("scheduler", "workers", "said"),
     [
-        (Workers(HERE, a=None, b="0.0.1"), "and none at a, 0.0.1 at b."),
-        (Workers(None, a=HERE), "and none at scheduler."),
+        (HERE, {"a": None, "b": "0.0.1"}, "and none at a, 0.0.1 at b."),
+        (None, {"a": HERE}, "and none at scheduler."),
     ],
 )
-def test_other_versions(client, said):
+def test_other_versions(scheduler, workers, said):
+    def on_scheduler(function, name):
+        assert (function, name) == (version, "drystone")
+        if scheduler is None:
+            raise PackageNotFoundError(name)
+        return scheduler
+
+    def on_workers(function, name, *, on_error):
+        assert (function, name, on_error) == (version, "drystone", "return")
+        return {at: one or PackageNotFoundError(name) for at, one in workers.items()}
+
+    client = SimpleNamespace(run=on_workers, run_on_scheduler=on_scheduler)
     with pytest.raises(UsageError, match=f"E405 .*drystone is {HERE} here, {said}"):
         check_versions(client)
 
 
-@pytest.fixture
-def _collected():
-    """Let go of a client that failed now: while another one begins, its end would wait for that."""
-    yield
-    gc.collect()
+def refused(address, said, patience_s):
+    with pytest.raises(UsageError, match=said), cluster_at_work(address, patience_s=patience_s):
+        pass
 
 
-@pytest.mark.usefixtures("_collected")
 @pytest.mark.parametrize("address", ["tcp://127.0.0.1:9", "nonsense://here"])
 def test_nobody_answers(address):
-    said = pytest.raises(UsageError, match=f"E404.*{address}")
-    with said, cluster_at_work(address, patience_s=0.3):
-        pass
+    refused(address, f"E404.*{address}", 0.3)
+    gc.collect()  # lets go of the client now: while another one begins, its end would wait for that
 
 
-def test_a_cluster_without_workers():
-    with (
-        distributed.LocalCluster(n_workers=0, processes=False, **QUIET) as cluster,
-        pytest.raises(UsageError, match=r"E404 .*has no workers"),
-        cluster_at_work(cluster.scheduler_address, patience_s=2.0),
-    ):
-        pass
-
-
-def test_dask_is_not_installed(monkeypatch):
+def test_a_cluster_without_workers_and_one_without_dask(monkeypatch):
+    with distributed.LocalCluster(n_workers=0, processes=False, **QUIET) as cluster:
+        refused(cluster.scheduler_address, r"E404 .*has no workers", 2.0)
     monkeypatch.setitem(sys.modules, "distributed", None)
-    missing = pytest.raises(UsageError, match=r"E403 .*drystone\[dask\]")
-    with missing, cluster_at_work("tcp://127.0.0.1:9"):
-        pass
+    refused("tcp://127.0.0.1:9", r"E403 .*drystone\[dask\]", 2.0)

@@ -1,0 +1,174 @@
+"""Fig. 5, clusters of like stones, and Fig. 12, stones as rigid blocks: on small walls."""
+
+import math
+from itertools import combinations
+
+import numpy as np
+import pytest
+from matplotlib.colors import to_hex
+from matplotlib.figure import Figure
+
+from drystone.clusters import stone_features
+from drystone.contacts.blocks import model_from_labels
+from drystone.drawing.palette import cluster_colour
+from drystone.poses import PoseBook
+from drystone_lab.reproduce import fig5, fig12
+from tests.lab.reproduce.small_walls import RUBBLE, built, context, gids, of, rows
+
+
+@pytest.fixture(scope="module")
+def outputs(here):
+    made = {"fig5": of("fig5", RUBBLE, (RUBBLE,)), "fig12": of("fig12", RUBBLE)}
+    return {name: item.make(here) for name, item in made.items()}
+
+
+@pytest.fixture(scope="module")
+def stones():
+    return RUBBLE.source.stones(None)
+
+
+@pytest.fixture(scope="module")
+def features(stones):
+    return stone_features(stones, PoseBook())
+
+
+def naive_ward(features, threshold):
+    """Join the two clusters at the least Ward distance until it is above the threshold."""
+    groups = [[k] for k in range(len(features))]
+
+    def distance(pair):
+        a, b = (features[groups[k]] for k in pair)
+        weight = 2 * len(a) * len(b) / (len(a) + len(b))
+        return math.sqrt(weight) * math.dist(a.mean(axis=0), b.mean(axis=0))
+
+    while len(groups) > 1:
+        i, j = least = min(combinations(range(len(groups)), 2), key=distance)
+        if distance(least) > threshold:
+            break
+        groups[i] += groups.pop(j)
+    return {frozenset(group) for group in groups}
+
+
+def test_clusters_are_those_of_joining_step_by_step_at_every_threshold(outputs, stones, features):
+    ids = [stone.id for stone in stones]
+    expected = {frozenset(ids[k] for k in group) for group in naive_ward(features, 0.2)}
+    table = rows(outputs["fig5"], "clusters")
+    assert {frozenset(map(int, row["ids"].split())) for row in table} == expected
+    for row in table:
+        among = [ids.index(int(i)) for i in row["ids"].split()]
+        assert row["stones"] == len(among)
+        mean = features[among].mean(axis=0)
+        assert (row["mean eccentricity"], row["mean size"]) == pytest.approx(mean, rel=2e-3)
+    (row,) = rows(outputs["fig5"], "thresholds")
+    for distance in fig5.DISTANCES:
+        assert row[f"{distance:g}"] == len(naive_ward(features, distance)), distance
+    drawn = gids(outputs["fig5"], "fig5")
+    assert all(drawn.count(f"stone-{stone.id}") == 2 for stone in stones)
+    # The span of thresholds has the paper's count.
+    grouped = fig5.ClusteredStones.of("rubble", stones)
+    low, high = grouped.between(7)
+    assert len(naive_ward(features, (low + high) / 2)) == 7
+    assert len(naive_ward(features, low - 2e-3)) > 7 > len(naive_ward(features, high + 2e-3))
+
+
+def test_the_stones_pr_fall_into_the_paper_s_clusters(tmp_path, data_dir):
+    output = of("fig5").make(context(tmp_path, data_dir))
+    assert len(rows(output, "clusters")) == fig5.PAPER_CLUSTERS
+    assert [row["stones"] for row in rows(output, "thresholds")] == ["PR", "R", "IR"]
+    assert [row["count"] for row in rows(output, "thresholds")] == [32, 34, 61]
+
+
+def test_stones_are_at_their_features_in_the_colour_of_their_cluster():
+    features, clusters = np.array([[0.2, 1.0], [0.8, 0.5], [0.81, 0.5]]), {3: 1, 5: 2, 8: 2}
+    ax = Figure().add_subplot()
+    fig5.plot_features(ax, features, [3, 5, 8], clusters)
+    lines = {line.get_gid(): line for line in ax.lines}
+    assert list(lines) == ["stone-3", "stone-5", "stone-8"]
+    for line, at, cluster in zip(lines.values(), features, clusters.values(), strict=True):
+        np.testing.assert_allclose(line.get_xydata(), [at])
+        assert to_hex(line.get_markerfacecolor()) == cluster_colour(cluster)
+    assert lines["stone-3"].get_marker() != lines["stone-5"].get_marker()
+
+
+@pytest.fixture(scope="module")
+def labels(folder):
+    return fig12.three_stones(built(folder, RUBBLE).wall)
+
+
+def naive_edges(labels):
+    """Pixel pairs side by side or above each other that belong to different blocks."""
+    height, width = labels.shape
+    found = set()
+    for row, col in np.argwhere(labels > 0).tolist():
+        here, x, y = int(labels[row, col]), col + 1, height - row
+        right = int(labels[row, x]) if x < width else 0
+        if right and here != right:
+            found.add(((x, y - 1), (x, y)) if here > right else ((x, y), (x, y - 1)))
+        below = int(labels[row + 1, col]) if row + 1 < height else -1
+        if below and below != here:
+            ends = ((col, y - 1), (col + 1, y - 1))
+            found.add(ends if here > below else ends[::-1])
+    return found
+
+
+def test_edges_are_where_pixels_of_two_blocks_meet_and_interfaces_end_on_their_corners(
+    labels, outputs
+):
+    found = [tuple(map(tuple, edge)) for edge in np.stack(fig12.boundary_edges(labels), 1).tolist()]
+    assert len(found) == len(set(found)) > 10
+    assert set(found) == naive_edges(labels)
+    corners = {point for edge in naive_edges(labels) for point in edge}
+    table = rows(outputs["fig12"], "interfaces")
+    for row in table:
+        ends = (row["x0"], row["y0"]), (row["x1"], row["y1"])
+        if row["length px"] > 0:
+            assert set(ends) <= corners
+        assert row["length px"] == pytest.approx(np.hypot(*np.subtract(*ends)), abs=1e-4)
+        assert np.hypot(row["normal x"], row["normal y"]) == pytest.approx(1, abs=1e-3)
+    assert {row["other"] for row in table} > {"ground"}
+    drawn = gids(outputs["fig12"], "fig12")
+    for row in rows(outputs["fig12"], "blocks"):
+        assert drawn.count(f"block-{row['stone']}") == 3
+        assert f"centre-{row['stone']}" in drawn
+    assert {"edges", "normals", "interfaces"} <= set(drawn)
+
+
+def test_three_stones_stand_on_the_ground_and_on_each_other(folder, labels):
+    run = built(folder, RUBBLE)
+    ids = set(np.unique(labels).tolist()) - {0}
+    assert len(ids) == 3
+    for stone in ids:
+        assert np.count_nonzero(labels == stone) == np.count_nonzero(run.wall.labels == stone)
+    on_ground = set(np.unique(labels[-1]).tolist()) - {0}
+    assert len(on_ground) == 2
+    (top,) = ids - on_ground
+    pairs = {frozenset((i.block, i.other)) for i in model_from_labels(labels).model.interfaces}
+    assert all(frozenset((top, below)) in pairs for below in on_ground)
+    # Where none stands on two, the first three are taken.
+    first = {stage.stone.stone for stage in run.stages[:3]}
+    assert set(np.unique(fig12.three_stones(run.stages[2].after)).tolist()) == first | {0}
+
+
+def test_the_mean_of_the_normals_of_pixels_is_across_the_ends():
+    steps = [0, 0, 1, 2, 2, 3, 4, 4, 5, 6, 6, 7]
+    labels = np.ones((12, 12), np.uint32)
+    for col, height in enumerate(steps):
+        labels[: 11 - height, col] = 2
+    starts, ends = fig12.boundary_edges(labels)
+    way = (ends - starts)[(starts[:, 1] > 0) | (ends[:, 1] > 0)]
+    mean = np.array([-way[:, 1], way[:, 0]]).mean(axis=1)
+    mean /= np.hypot(*mean)
+    (run,) = [i for i in model_from_labels(labels).model.interfaces if i.other == 1]
+    np.testing.assert_allclose(fig12._mean_normal(run), mean, atol=1e-12)
+    assert 0 < fig12._apart_deg(run) < 10
+
+
+def test_normals_are_to_the_left_of_the_way():
+    starts, ends = np.array([[4.0, 4.0], [8.0, 0.0]]), np.array([[5.0, 4.0], [8.0, 1.0]])
+    ax = Figure().add_subplot()
+    labels = np.kron([[0, 7, 7], [3, 3, 5]], np.ones((4, 4), int)).astype(np.uint32)
+    fig12.plot_boundary_edges(ax, labels, starts, ends)
+    lines = {one.get_gid(): one.get_segments() for one in ax.collections}
+    np.testing.assert_allclose(lines["edges"], np.stack([starts, ends], axis=1))
+    ups = [[[4.5, 4.0], [4.5, 4.0 + fig12.NORMAL_PX]], [[8.0, 0.5], [8.0 - fig12.NORMAL_PX, 0.5]]]
+    np.testing.assert_allclose(lines["normals"], ups)

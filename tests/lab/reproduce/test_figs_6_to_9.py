@@ -1,0 +1,309 @@
+"""Figs. 6 and 7, indices; Fig. 8, positions; Fig. 9, stones that fall: on small walls."""
+
+import math
+
+import numpy as np
+import pytest
+from matplotlib.colors import to_hex
+from matplotlib.figure import Figure
+
+from drystone.model.landscape import Box
+from drystone.model.placement import Wedge
+from drystone.model.pose import PosedStone
+from drystone.model.stone import Stone
+from drystone.stabilise.stabilise import Support
+from drystone_lab.reproduce import fig6_7, fig8, fig9
+from drystone_lab.reproduce.construction import amid_course
+from tests.lab.reproduce.small_walls import RUBBLE, SHARP, built, gids, of, rows
+from tests.naive import indices as naive
+from tests.naive.rays import local_filling_ratio
+from tests.naive.support import rests_stably
+
+
+def slab(height, width):
+    """A stone that is a rectangle."""
+    mask = np.ones((height, width), bool)
+    return PosedStone(Stone(9, mask), 0.0, 1.0, mask, (width / 2, height / 2))
+
+
+@pytest.fixture(scope="module")
+def outputs(here):
+    asked = {"fig6-7": RUBBLE, "fig8": RUBBLE, "fig9": SHARP}
+    return {name: of(name, wall).make(here) for name, wall in asked.items()}
+
+
+EVERY = 4
+"""Columns that are looked at slowly: each of so many."""
+
+
+@pytest.fixture(scope="module")
+def amid(folder):
+    return amid_course(built(folder, RUBBLE))
+
+
+@pytest.fixture(scope="module")
+def places(amid):
+    return fig6_7.resting_places(amid[0])
+
+
+def test_places_are_all_at_which_a_stone_rests(amid, places):
+    moment = amid[0]
+    posed = moment.workshop.poses(moment.remaining[0])[0]
+    occupied, mask = moment.wall.occupied, posed.mask
+    height, width = occupied.shape
+    expected = {
+        (row, col)
+        for row in range(height - mask.shape[0] + 1)
+        for col in range(0, width - mask.shape[1] + 1, EVERY)
+        if not np.any(occupied[row : row + mask.shape[0], col : col + mask.shape[1]] & mask)
+        and rests_stably(occupied, mask, row, col, col + posed.anchor[0], 0.0)
+    }
+    found = {(p.row, p.col) for p in places if p.posed is posed}
+    assert {place for place in found if place[1] % EVERY == 0} == expected != set()
+    assert {p.posed.stone.id for p in places} <= set(moment.remaining)
+
+
+def test_extremes_are_the_least_and_the_largest(outputs, places):
+    for row in rows(outputs["fig6-7"], "extremes"):
+        name = row["index"]
+        values = [place.values[name] for place in places if name in place.values]
+        best = (row["case"] == "favourable") == (name != "NHR")
+        assert row["value"] == pytest.approx(max(values) if best else min(values), abs=1e-4)
+
+
+def test_counting_again_agrees_everywhere(amid, places):
+    seen = set()
+    for place in places[::7]:
+        action = fig6_7.action_at(amid[0], place.posed, place.row, place.col)
+        for name in place.values.keys() - {"SF"}:
+            again = fig6_7.recounted(action, name)
+            if again is not None:
+                assert again == pytest.approx(place.values[name], abs=1e-12), (name, place.order)
+                seen.add(name)
+    assert seen == {"LFR", "GDS", "NHR", "IWR", "IS"}
+
+
+def test_the_stone_of_fig7_stands_where_the_run_left_it(folder, outputs, amid):
+    stage = built(folder, RUBBLE).stages[amid[0].number - 1]
+    table = rows(outputs["fig6-7"], "fig7")
+    assert {row["stone"] for row in table} == {stage.group.placement.stone_id}
+    assert {row["index"] for row in table} >= {"NHR", "IWR"}
+    for row in table:
+        assert row["value"] == pytest.approx(stage.stone.indices[row["index"]], abs=1e-4)
+    # Pictures show what is measured.
+    six, seven = (gids(outputs["fig6-7"], name) for name in ("fig6", "fig7"))
+    assert [six.count(mark) for mark in ("stone", "begun", "rays", "box")] == [12, 2, 2, 2]
+    assert {*seven} >= {
+        "stone", "rays", "begun", "box", "top", "joint", "offset", "slope", "name"
+    }  # fmt: skip
+
+
+def test_only_what_is_asked_for_is_marked():
+    labels, swept = np.zeros((10, 20), np.uint32), np.zeros((10, 20), bool)
+    labels[6:, :6], labels[6:, 6:12], labels[2:6, :5] = 1, 2, 3
+    swept[3:6, :5] = swept[6:, 5:9] = True
+    below = (1, Box(0, 6, 0, 4)), (2, Box(6, 12, 0, 4))
+    action = fig6_7.ActionView(
+        labels, slab(3, 4), 3, 5, swept, 8, (3, Box(0, 5, 4, 8)), below, (0, 3)
+    )
+
+    def drawn(ax, gid):
+        return [line.get_xydata().tolist() for line in ax.lines if line.get_gid() == gid]
+
+    ax = fig6_7.plot_action(action, {"neighbour"})
+    fills = {patch.get_gid(): to_hex(patch.get_facecolor()) for patch in ax.patches}
+    assert fills["block-3"] == fig6_7.NEIGHBOUR
+    assert fills["block-1"] == fills["block-2"] == fig6_7.BUILT
+    assert fills["stone"] == fig6_7.STONE
+    assert not ax.images
+    # Tops at 7 and at 8, over both stones; the difference between them.
+    assert drawn(ax, "top") == [[[0, 7], [9, 7]], [[0, 8], [9, 8]]]
+    assert drawn(ax, "difference") == [[[4.5, 7], [4.5, 8]]]
+    # Joints are the top corners of the stones below.
+    ax = fig6_7.plot_action(action, {"joints", "rays", "box", "begun", "slope"})
+    patches = {patch.get_gid(): patch for patch in ax.patches}
+    for block in ("block-1", "block-2"):
+        assert to_hex(patches[block].get_facecolor()) == fig6_7.BELOW
+    assert drawn(ax, "joint") == [[[6, 4]], [[6, 4]]]
+    assert drawn(ax, "offset") == [[[5, 4], [6, 4]], [[9, 4], [6, 4]]]
+    assert drawn(ax, "slope") == [[[5.5, 7], [8.5, 7]]]
+    np.testing.assert_array_equal(ax.images[0].get_array()[..., 3] > 0, swept)
+    assert patches["box"].get_bbox().bounds == (5, 4, 4, 3)
+    assert patches["begun"].get_bbox().bounds == (0, 0, 20, 8)
+
+
+@pytest.fixture(scope="module")
+def trial(amid):
+    moment, place = amid
+    return moment, moment.trial(place.posed.stone.id)
+
+
+def naive_maps(occupied, mask):
+    """Position by position: overlap with the landscape, and with what is beside it."""
+    bounds = np.pad(occupied, 1, constant_values=True)
+    grown = bounds.copy()
+    for r, c in np.argwhere(bounds[1:-1, 1:-1]) + 1:
+        grown[[r - 1, r + 1, r, r], [c, c, c - 1, c + 1]] = True
+    grown[[1, -2]] = grown[:, [1, -2]] = True
+    shape = np.array(occupied.shape) - mask.shape + 1
+    free, floating = np.zeros(shape, bool), np.zeros(shape, bool)
+    for row, col in np.ndindex(*shape):
+        window = np.s_[row : row + mask.shape[0], col : col + mask.shape[1]]
+        free[row, col] = not np.any(occupied[window] & mask)
+        floating[row, col] = not np.any(grown[1:-1, 1:-1][window] & mask)
+    return free, floating
+
+
+def test_maps_are_those_of_every_position_and_so_are_counts(outputs, trial):
+    moment, (posed, *_) = trial
+    maps = fig8.PositionMaps.of(moment.wall.occupied, posed.mask)
+    free, floating = naive_maps(moment.wall.occupied, posed.mask)
+    np.testing.assert_array_equal(maps.free, free)
+    np.testing.assert_array_equal(maps.floating, floating)
+    assert not np.any(maps.touching & maps.floating)
+    below = np.vstack([free[1:], np.zeros_like(free[:1])])
+    resting = np.count_nonzero(free & ~below)
+    counts = [row["count"] for row in rows(outputs["fig8"], "positions")]
+    touching = free.sum() - floating.sum()
+    assert counts == [free.size, free.sum(), floating.sum(), touching, resting, 1]
+    drawn = set(gids(outputs["fig8"], "fig8"))
+    assert len([gid for gid in drawn if gid.startswith("layer-")]) == 4
+    assert {"values", "chosen", "best"} <= drawn
+
+
+def test_the_chosen_position_is_worth_most(outputs, trial):
+    moment, (posed, row, col) = trial
+    occupied = moment.wall.occupied
+
+    def value(at):
+        stone = naive.painted(occupied.shape, posed.mask, *at)
+        dice = naive.dice_score(occupied, stone)
+        x_c = at[1] + posed.anchor[0]
+        filled = local_filling_ratio(occupied, posed.mask, *at)
+        return filled + (dice if dice > 0.7 else 0.0) - x_c / occupied.shape[1]
+
+    *_, touching, best, chosen = rows(outputs["fig8"], "positions")
+    assert chosen["best: left px"] == col
+    assert chosen["best: Eq. 12"] == pytest.approx(value((row, col)), abs=1e-4)
+    assert best["best: Eq. 12"] == chosen["best: Eq. 12"] <= touching["best: Eq. 12"]
+    others = moment.positions(posed)[::9].tolist()
+    assert max(map(value, map(tuple, others))) <= value((row, col)) + 1e-12
+
+
+def test_positions_and_their_values_are_drawn_at_the_centroids():
+    site, at = np.zeros((6, 10), np.uint32), np.zeros((5, 7), bool)
+    site[4:, :5], at[2, 3] = 1, True
+    ax, values = Figure().subplots(1, 2)
+    fig8.plot_position_layers(ax, site, slab(2, 4), [("here", "#d55e00", at)])
+    (image,) = ax.images
+    rgba, (left, right, bottom, top) = image.get_array(), image.get_extent()
+    ((row, col),) = np.argwhere(rgba[..., 3] > 0).tolist()
+    x = left + (col + 0.5) * (right - left) / rgba.shape[1]
+    y = top - (row + 0.5) * (top - bottom) / rgba.shape[0]
+    # Columns 3 to 7, rows 2 and 3 from the top.
+    assert (x, y) == (5.0, 3.0)
+    # The stone is at the chosen one.
+    positions, worth = np.array([[2, 0], [2, 1], [4, 5]]), np.array([1.0, 0.9, 0.5])
+    fig8.plot_position_values(values, site, slab(2, 4), positions, worth, (2, 0))
+    (dots,) = [one for one in values.collections if one.get_gid() == "values"]
+    np.testing.assert_allclose(dots.get_offsets(), [[2, 3], [3, 3], [7, 1]])
+    np.testing.assert_allclose(dots.get_array(), worth)
+    (stone,) = [patch for patch in values.patches if patch.get_gid() == "chosen"]
+    box = stone.get_path().get_extents()
+    assert (box.x0, box.y0, box.x1, box.y1) == (0, 2, 4, 4)
+    (best,) = [line for line in values.lines if line.get_gid() == "best"]
+    assert best.get_xydata().tolist() == [[2, 3]]
+
+
+@pytest.fixture(scope="module")
+def unstable(folder):
+    return fig9.unstable_trials(built(folder, SHARP))
+
+
+def falls(occupied, pose):
+    posed, row, col = pose
+    under = occupied[row : row + posed.height_px, col : col + posed.width_px]
+    assert not np.any(under & posed.mask)
+    return not rests_stably(occupied, posed.mask, row, col, col + posed.anchor[0], 0.0)
+
+
+def test_every_stone_that_is_left_is_tried_and_those_that_fall_are_found(folder, unstable):
+    tried = [
+        (moment, stone_id, trial)
+        for moment in built(folder, SHARP).moments
+        for stone_id in moment.remaining
+        if (trial := moment.trial(stone_id)) is not None
+    ]
+    assert unstable[0] == len(tried)
+    assert [(one.moment.number, one.stone_id) for one in unstable[1]] == [
+        (moment.number, stone_id)
+        for moment, stone_id, trial in tried
+        if falls(moment.wall.occupied, trial)
+    ]
+
+
+def test_turned_and_wedged_stones_rest(unstable):
+    for case in unstable[1]:
+        occupied = case.moment.wall.occupied
+        if case.turned is not None:
+            assert not falls(occupied, case.turned.pose)
+            first, last = (one.pose[0].angle_deg for one in (case.trial, case.turned))
+            assert math.remainder(case.turn_deg - (last - first), 360) == 0
+            # It turns to the side to which it falls.
+            assert (case.turn_deg < 0) == (case.trial.falls > 0)
+        if case.wedged is not None:
+            scene = occupied.copy()
+            for wedge in case.wedged.wedges:
+                assert not np.any(scene[wedge.window] & wedge.mask)
+                scene[wedge.window] |= wedge.mask
+            assert not falls(scene, case.wedged.pose)
+            assert case.wedged.pose == case.trial.pose
+    for way in ("turned", "wedged"):
+        assert sum(getattr(case, way) is not None for case in unstable[1]) > 5
+
+
+def test_counts_add_up_and_the_most_turned_and_the_largest_wedge_are_drawn(outputs, unstable):
+    count = {row["what"]: row["count"] for row in rows(outputs["fig9"], "counts")}
+    trials, cases = unstable
+    assert (count["tried"], count["not stable"]) == (trials, len(cases))
+    ends = ("stable after turning", "turning fails, a wedge does", "neither")
+    assert sum(count[end] for end in ends) == len(cases)
+    assert count["sign of AB x AC is wrong"] == sum(not one.sign_agrees for one in cases)
+    table = rows(outputs["fig9"], "cases")
+    assert [row["pose"] for row in table] == ["tried", "turned", "wedged", "tried", "wedged"]
+    wide = [
+        case for case in unstable[1]
+        if case.turned is not None and case.wedged is not None
+        and case.trial.support.right_x - case.trial.support.left_x
+        >= fig9.WIDE * case.trial.pose[0].width_px
+    ]  # fmt: skip
+    assert abs(table[1]["turned deg"]) == max(abs(case.turn_deg) for case in wide)
+    for row in table:
+        assert (row["wedge height px"] is None) == (row["pose"] != "wedged")
+    drawn = gids(outputs["fig9"], "fig9")
+    assert [drawn.count(gid) for gid in ("stone", "AB", "C", "C'")] == [5, 5, 5, 5]
+    assert (drawn.count("turn"), drawn.count("before"), drawn.count("supported")) == (2, 1, 2)
+    assert sum(gid.startswith("wedge-") for gid in drawn) >= 2
+
+
+def test_points_of_a_stone_that_falls_and_sizes_of_the_wedge_that_holds_it():
+    step, lying = np.zeros((10, 20), np.uint32), (slab(3, 12), 3, 4)
+    step[6:, :8] = 1
+    trial = fig9.SupportedStone(lying, Support(4, 8, 6, 6), 1, (), 10)
+    wedge = Wedge(10, 9, np.ones((4, 2), bool), 6, 13)
+    wedged = fig9.SupportedStone(lying, Support(4, 15, 6, 6), 0, (wedge,), 10)
+    ax, held = Figure().subplots(1, 2)
+    fig9.plot_standing(ax, step, trial, (0, 0, 20, 10))
+    drawn = {line.get_gid(): line.get_xydata().tolist() for line in ax.lines}
+    assert (drawn["AB"], drawn["C"], drawn["C'"]) == ([[8, 4], [4, 4]], [[10, 5.5]], [[10, 4]])
+    # AB = (-4, 0), AC = (2, 1.5): clockwise, to the right.
+    assert trial.cross == pytest.approx(-6.0)
+    marks = {patch.get_gid() for patch in ax.patches}
+    assert ("turn" in marks, "supported" in marks) == (True, False)
+    fig9.plot_standing(held, step, wedged, (0, 0, 20, 10), before=trial)
+    patches = {patch.get_gid(): patch for patch in held.patches}
+    assert "turn" not in patches
+    box = patches["wedge-10"].get_path().get_extents()
+    assert (box.x0, box.y0, box.x1, box.y1) == (13, 0, 15, 4)
+    assert patches["supported"].get_bbox().bounds == (4, 4, 4, 3)
+    assert "h 4, w 2" in [text.get_text() for text in held.texts]

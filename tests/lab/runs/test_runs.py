@@ -1,0 +1,202 @@
+"""Runs: what they are called and made of, and what comes out of them is kept."""
+
+import json
+from dataclasses import fields, replace
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from drystone.errors import DrystoneError, InputError
+from drystone.planner.planner import Planner
+from drystone.planner.settings import method_settings
+from drystone.search.plan_wall import plan_wall
+from drystone_lab.runs import spec as spec_module
+from drystone_lab.runs.outcome import FIGURES, Runner, RunStore, execute, one_by_one
+from drystone_lab.runs.spec import RunSpec, StoneSource, published
+from tests.lab.runs.bricks import SOURCE, kept, picture, run
+
+SPEC = RunSpec(source=SOURCE, width=60, height=20)
+OTHERS = {
+    "source": replace(SOURCE, seed=2),
+    "width": 61.0,
+    "height": 21.0,
+    "scale": 0.5,
+    "method": "best",
+    "changes": (("placement.beta", 0.5),),
+    "seed": 1,
+}
+OTHER_SOURCES = {"kind": "rubble", "name": "a.png", "seed": 2, "settings": (("count", 7),)}
+
+
+def test_the_key_changes_with_every_field_and_with_the_version(monkeypatch):
+    assert set(OTHERS) == {field.name for field in fields(RunSpec)}
+    assert set(OTHER_SOURCES) == {field.name for field in fields(StoneSource)}
+    others = [replace(SPEC, **{name: value}) for name, value in OTHERS.items()]
+    for name, value in OTHER_SOURCES.items():
+        others.append(replace(SPEC, source=replace(SOURCE, **{name: value})))
+    keys = {SPEC.key, *(other.key for other in others)}
+    # Another seed of the source is among both.
+    assert len(keys) == len(OTHERS) + len(OTHER_SOURCES)
+    monkeypatch.setattr(spec_module, "version", lambda _: "0.0.0")
+    assert SPEC.key not in keys
+
+
+def test_equal_runs_have_equal_keys():
+    as_floats = RunSpec(source=SOURCE, width=60.0, height=20.0, scale=1)
+    assert as_floats == SPEC
+    one, other = ("mu", 0.5), ("placement.beta", 0.5)
+    assert replace(SPEC, changes=(one, other)).key == replace(SPEC, changes=(other, one)).key
+    # What the method has anyway: walls of several items of the paper are planned once.
+    usual = (("orientations", "quarter"), ("placement.beta", 0.7))
+    assert replace(SPEC, changes=usual).key == SPEC.key == as_floats.key
+
+
+def test_changes_replace_settings_leave_the_others_and_are_told():
+    changed = replace(SPEC, changes=(("placement.beta", 0.5), ("mu", 0.4))).settings()
+    default = method_settings("paper")
+    assert (changed.placement.beta, changed.mu) == (0.5, 0.4)
+    assert replace(changed, mu=default.mu, placement=default.placement) == default
+    assert SPEC.settings() == default
+    assert str(SPEC) == "brick 1, 60 x 20 px at 1, paper, seed 0"
+    own = RunSpec(source=published("a/R.png"), changes=(("mu", 0.4),))
+    assert str(own) == "a/R.png, own size at 1, paper, mu = 0.4, seed 0"
+
+
+def test_published_stones_are_in_their_folder_or_others_in_their_place(tmp_path):
+    own, theirs = published("set/bricks.png"), published("almeida/PR.png")
+    for folder in (None, tmp_path):
+        assert not own.is_there(folder)
+        theirs.check(folder)  # a file that is missing is another matter
+    picture(tmp_path / "set" / "bricks.png")
+    assert own.is_there(tmp_path)
+    assert len(own.stones(tmp_path)) == 6
+    picture(tmp_path / "almeida" / "PR.png")
+    for refused in (theirs.check, theirs.stones):
+        with pytest.raises(InputError, match="E160"):
+            refused(tmp_path)
+
+
+def test_published_pictures_may_be_read_otherwise(tmp_path):
+    path = tmp_path / "one.png"
+    Image.fromarray(np.full((12, 24, 4), 255, np.uint8)).save(path)
+    bricks = published("one.png", copies=3).stones(tmp_path)
+    assert [(stone.id, stone.mask.shape) for stone in bricks] == [(n, (12, 24)) for n in (1, 2, 3)]
+    grey = np.zeros((30, 40), np.uint8)
+    grey[5:15, 5:15], grey[20:28, 20:38], grey[2, 2] = 7, 9, 8
+    Image.fromarray(np.dstack([grey] * 3)).save(path)
+    source = published("one.png", least_px=10)
+    assert [stone.id for stone in source.stones(tmp_path)] == [7, 9]
+    np.testing.assert_array_equal(source.labels(tmp_path), np.where(grey == 8, 0, grey))
+
+
+def test_it_is_what_plan_wall_gives():
+    outcome = execute(run(3), None)
+    stones, rest = SOURCE.stones(None), {"seed": 3, "method": "paper", "scale": 1.0}
+    result = plan_wall(stones, 60, 20, **rest, coulomb=False)
+    assert outcome.as_plan == result.plan
+    assert result.metrics.F_LR_coulomb is None
+    assert plan_wall(stones, 60, 20, **rest).metrics.F_LR_coulomb is not None
+    assert tuple(outcome.figures) == FIGURES
+    assert outcome.figures["placed"] == outcome.figures["stones"] == 6
+    assert outcome.figures["F_LR"] == result.metrics.F_LR
+    assert outcome.figures["wedges"] == 0
+    assert outcome.key == run(3).key
+    # The wall is built again from its plan.
+    wall = outcome.wall(run(3), None)
+    assert set(np.unique(wall.labels)) - {0} == set(outcome.clusters)
+    assert np.count_nonzero(wall.labels) / wall.labels.size == outcome.figures["F_SF"]
+    # The image is the wall when no size is given.
+    plan = execute(replace(run(1), width=0.0, height=0.0), None).plan
+    assert tuple(plan["wall"].values()) == (stones.source.width_px, stones.source.height_px)
+
+
+def test_an_interrupted_wall_is_no_outcome(monkeypatch):
+    def interrupted(_):
+        raise KeyboardInterrupt
+        yield
+
+    monkeypatch.setattr(Planner, "steps", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        execute(run(1), None)
+
+
+def booked(done, stop=None):
+    """Do runs one by one from the last, write down which, and be interrupted after some."""
+
+    def work(specs, data):
+        for spec in specs[::-1]:
+            if len(done) == stop:
+                raise KeyboardInterrupt
+            yield from one_by_one([spec], data)
+            done.append(spec.seed)
+
+    return work
+
+
+def test_outcomes_are_in_the_order_of_the_runs_and_equal_ones_are_done_once(tmp_path):
+    done, said, specs = [], [], [run(3), run(1), run(3), run(2)]
+    runner = Runner(RunStore(tmp_path), work=booked(done), say=said.append)
+    first, again = (runner.run(specs) for _ in range(2))
+    assert [outcome.key for outcome in first] == [spec.key for spec in specs]
+    assert first[0] is first[2]
+    assert done == [2, 1, 3]
+    assert [line.split(",")[0] for line in said] == [f"{k} of 3 walls" for k in (1, 2, 3)]
+    assert [(one.plan, one.times) for one in again] == [(one.plan, one.times) for one in first]
+
+
+def test_what_ended_before_an_interrupt_is_kept(tmp_path):
+    specs, store, later = [run(1), run(2), run(3)], RunStore(tmp_path), []
+    with pytest.raises(KeyboardInterrupt):
+        Runner(store, work=booked([], stop=2)).run(specs)
+    assert [kept(store, spec) for spec in specs] == [False, True, True]
+    assert len(Runner(store, work=booked(later)).run(specs)) == 3
+    assert later == [1]
+    # Runs that nobody did are missed.
+    with pytest.raises(RuntimeError, match="lost"):
+        Runner(store, work=lambda _specs, _data: iter(())).run([run(4)])
+
+
+@pytest.fixture(scope="module")
+def outcome():
+    return execute(run(1), None)
+
+
+def test_what_was_kept_is_found(tmp_path, outcome):
+    store = RunStore(tmp_path / "new" / "folder")
+    assert store.get(outcome.key) is None
+    store.put(outcome)
+    assert vars(RunStore(store.folder).get(outcome.key)) == vars(outcome)
+    assert store.get(run(2).key) is None
+
+
+def without(part, name):
+    """What takes a name out of a part of a file."""
+
+    def damage(text):
+        data = json.loads(text)
+        del data[part][name]
+        return json.dumps(data)
+
+    return damage
+
+
+@pytest.mark.parametrize(
+    "damage",
+    [
+        lambda text: text[: len(text) // 2],
+        lambda _: "null",
+        lambda _: '{"figures": 1, "plan": 2, "times": 3}',
+        lambda text: "\udcff" + text,
+        without("plan", "steps"),
+        without("times", "wall"),
+        without("figures", "F_LR"),
+    ],
+)
+def test_a_damaged_file_is_named_with_the_cure(tmp_path, outcome, damage):
+    store = RunStore(tmp_path)
+    store.put(outcome)
+    (path,) = tmp_path.iterdir()
+    path.write_text(damage(path.read_text("utf-8")), "utf-8", errors="surrogateescape")
+    with pytest.raises(DrystoneError, match=f"^E401 {path}: .*Delete the file"):
+        store.get(outcome.key)
