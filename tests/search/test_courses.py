@@ -259,7 +259,7 @@ def yard():
 @pytest.fixture(scope="module")
 def first_plan(yard):
     # Not the cheapest plan of all, which would only be found again.
-    return newly_planned(yard, rng(14))
+    return newly_planned(yard, rng(5))
 
 
 def poses(found):
@@ -288,7 +288,7 @@ def check(found, yard):
 def test_a_plan_is_laid_and_the_rest_goes_on_top(first_plan, yard):
     check(first_plan, yard)
     assert first_plan.figures.stones >= 6
-    again, *others = (newly_planned(yard, rng(seed)) for seed in (14, 3, 4))
+    again, *others = (newly_planned(yard, rng(seed)) for seed in (5, 3, 4))
     assert poses(again) == poses(first_plan)
     assert any(other is not None and poses(other) != poses(first_plan) for other in others)
     begun = yard.planner()

@@ -270,7 +270,7 @@ def test_a_plan_that_begins_with_a_wall_is_no_worse():
 
 
 def small_search():
-    return plan_wall(STONES, 100, 36, scale=1.0, seed=2, settings=scenes.greedy(FEW), choice=True)
+    return plan_wall(STONES, 100, 36, scale=1.0, seed=1, settings=scenes.greedy(FEW), choice=True)
 
 
 @pytest.fixture(scope="module")
