@@ -17,7 +17,6 @@ STRAIGHT = 1e-9
 FLAT = 1e-6
 """Corners of parts that turn by less than this, radians, are none."""
 
-
 REACHES = (0.3, 0.1, 0.03, 0.01, 0.003)
 """How far parts reach into the stone beyond their faces, over the square root of its area."""
 

@@ -2,7 +2,7 @@
 
 import math
 from collections import Counter
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import takewhile
 from typing import NamedTuple
@@ -35,10 +35,8 @@ MISSING = 10.0
 SCANNED = CraftSettings(sample=0.07)
 """Bond is looked at along fewer lines than `craft` does, for every wall of a search."""
 
-
 QUICK = NonassociativeSettings(starts=STARTS[:1], random_starts=0, let_go=False)
 """One start of twelve finds the least load without dilatancy of most walls."""
-
 
 STOPPED = 14
 """A builder who has to mend a wall loses as much as with so many stones."""
@@ -128,10 +126,10 @@ def merit_of(figures: WallFigures | None, possible: float, goal: GoalSettings) -
         return -math.inf
     return math.fsum(
         [
-            goal.filling * _up(figures.F_SF, goal.F_SF, goal.urgent) / possible,
-            goal.resistance * _up(min(1.0, figures.carried), goal.F_LR, goal.urgent),
-            goal.vertical * _up(figures.F_AV, goal.F_AV, goal.urgent),
-            -goal.horizontal * _down(figures.F_AH, goal.F_AH, goal.urgent),
+            goal.filling * _aimed(figures.F_SF, goal.F_SF, goal.urgent, min) / possible,
+            goal.resistance * _aimed(min(1.0, figures.carried), goal.F_LR, goal.urgent, min),
+            goal.vertical * _aimed(figures.F_AV, goal.F_AV, goal.urgent, min),
+            -goal.horizontal * _aimed(figures.F_AH, goal.F_AH, goal.urgent, max),
             -goal.level * figures.T_LEVEL,
             -goal.flush * figures.E_FLUSH,
             -goal.bond * figures.bond,
@@ -141,14 +139,9 @@ def merit_of(figures: WallFigures | None, possible: float, goal: GoalSettings) -
     )
 
 
-def _up(value: float, aim: float, urgent: float) -> float:
-    """Return what a figure counts that shall be high: no more than its aim."""
-    return value if aim == 0.0 else urgent * min(value, aim)
-
-
-def _down(value: float, aim: float, urgent: float) -> float:
-    """Return what a figure counts that shall be low: no less than its aim."""
-    return value if aim == 0.0 else urgent * max(value, aim)
+def _aimed(value: float, aim: float, urgent: float, end: Callable[..., float]) -> float:
+    """Return what a figure counts: no more (`min`) or no less (`max`) than its aim, if any."""
+    return value if aim == 0.0 else urgent * end(value, aim)
 
 
 class RehearsalFalls(NamedTuple):

@@ -28,14 +28,12 @@ from drystone.search.whole_search import SearchEnd, as_found, cut_off, run_to_en
 TYPICAL_STONE_PX = 40
 """Longer side of the median stone at the resolution that is chosen when none is given."""
 
-
 GRACE = 0.5
 """What follows a search may take this share of its time, and at least a second: judging its best
 walls, the rest of the stones.  So may the last figures of merit, and the walls to choose from."""
 
 SOON_S = 2.0
 """After an interrupt the last figures of merit may take so long: who interrupts waits."""
-
 
 MOST_WALLS, LEAST_WALLS, WORK = 32, 8, 1280
 """So many walls are tried when nothing is said: at most, at least, and times stones in between."""

@@ -9,7 +9,6 @@ from drystone.indices import Indices
 MEAN_SLACK = 1e-12
 """A mean may round above every one of equal values; without slack the filter would drop all."""
 
-
 TIE_DIGITS = 9
 """Sums that contain LLC are equal to the precision of the limit analysis."""
 

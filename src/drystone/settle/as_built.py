@@ -46,7 +46,6 @@ class Bed(NamedTuple):
 
 
 _ENDS = Bearing(-math.inf, 0.0, -1), Bearing(math.inf, 0.0, -1)
-
 HELD = Bed(_ENDS, frozenset(), _ENDS)
 """The bed of a block that stays, whatever comes onto it."""
 

@@ -24,7 +24,6 @@ Plane = NDArray[np.float32]
 Light = NDArray[np.float32]
 """(h, w, 3), linear, 0 to 1 for what a camera can record."""
 
-
 _ROCKS: dict[Rock, tuple[tuple[str, ...], float, float, float]] = {
     "granite": (("#a3a09c", "#b3a79d", "#8f9092"), 0.10, 0.55, 0.0),
     "sandstone": (("#b98f63", "#a5714f", "#c7a77c"), 0.16, 0.08, 0.15),

@@ -305,7 +305,6 @@ RESOLUTION = PaperItem(
 WALL_PX = (420, 120)
 """Of every wall; more stones are smaller ones, so that a candidate always has as many pixels."""
 
-
 SIZES = (16, 32, 64, 128), (0.05, 0.1, 0.4, 1.0)
 QUICK_SIZES = (8, 16, 32), (0.1, 0.4)
 """Numbers of stones Q; and thresholds of the clusters K, with the largest Q."""

@@ -18,6 +18,7 @@ from drystone.errors import InputError
 from drystone.io.json_text import number
 from drystone.kernels.polygons import Points, area_and_centroid
 from drystone.model.frames3d import Matrix, Vector
+from drystone.model.outline import second_moments
 
 Vertices = NDArray[np.float64]
 Triangles = NDArray[np.int64]
@@ -85,21 +86,10 @@ def inertia(assembly: Assembly, part: Part) -> tuple[Vector, Matrix]:
     """
     area, x, z = area_and_centroid(part.own_corners)
     mass = assembly.mass_kg(part)
-    xx, zz, xz = second_moments(part.own_corners - np.array([x, z])) * (mass / area)
+    xx, zz, xz = np.array(second_moments(part.own_corners)) * (mass / area)
     yy = mass * assembly.thickness**2 / 12.0
     tensor = np.array([[zz + yy, 0.0, -xz], [0.0, xx + zz, 0.0], [-xz, 0.0, xx + yy]])
     return (x, 0.0, z), tensor + 0.0
-
-
-def second_moments(outline: Points) -> Matrix:
-    """Return the integrals of x^2, z^2 and x z over the inside of an outline, about the origin."""
-    x, z = outline.T
-    u, v = np.roll(outline, -1, axis=0).T
-    cross = x * v - u * z
-    xx = np.sum(cross * (x * x + x * u + u * u)) / 12.0
-    zz = np.sum(cross * (z * z + z * v + v * v)) / 12.0
-    xz = np.sum(cross * (x * v + 2.0 * x * z + 2.0 * u * v + u * z)) / 24.0
-    return np.array([xx, zz, xz])
 
 
 def material(part: Part) -> tuple[str, Rgb]:

@@ -17,7 +17,6 @@ FIGURES = (
 )  # fmt: skip
 """Metrics that the summary has beside F_SF."""
 
-
 MOST_NAMED = 2
 """More stones that found no place are named in the table alone."""
 

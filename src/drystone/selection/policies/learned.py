@@ -33,7 +33,6 @@ FEATURES = (
 """Of an offer (docs/evidence/learning.md).  SF and the size of the stone are not among them: they
 hardly differ between the places of one stone, so stones that arrive teach nothing of them."""
 
-
 FLUSH = 0.15
 """A stone ends with the wall when less than this share of its size is left above it."""
 
