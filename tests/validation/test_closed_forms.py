@@ -15,6 +15,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from drystone.statics.flow.nonassociative import nonassociative_resistance
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.squeeze import held_by_upright_faces
 from drystone_lab import statics_cases
@@ -31,6 +32,15 @@ def test_what_the_cases_expect(case):
     The last has no closed form; it is what a public program for block assemblies prints for it.
     """
     assert alphas(case.model) == pytest.approx((case.left, case.right), abs=1e-8)
+
+
+def test_numbers_of_the_cases():
+    """Sliding and overturning of 1 x 2 and the shifted block by hand: (.5 - .2) / .5 and so on."""
+    block, pair = statics_cases.single_block(1, 2, 0.7), statics_cases.two_equal_blocks(2, 1, 0.65)
+    assert (block.left, block.right, pair.left, pair.right) == (0.5, 0.5, 0.65, 0.65)
+    stack = statics_cases.offset_stack(0.2, 0.9)
+    assert (stack.left, stack.right) == pytest.approx((0.6, 0.4))
+    assert len(statics_cases.running_bond().rectangles) == 10
 
 
 @given(
@@ -66,6 +76,22 @@ def test_towers_of_slabs(slabs, unit, mu):
     if min(sides) > 0.0:
         assert alphas(model) == pytest.approx(tuple(sides), abs=1e-7)
         assert held_by_upright_faces(model) == ()
+
+
+@pytest.mark.parametrize("gap", [0.0, 0.025])
+@pytest.mark.parametrize("courses", [2, 4])
+def test_low_bonds_slide_with_head_joints_open_or_closed(gap, courses):
+    """Bricks 1 x .25 in running bond, half bricks at the ends of every other course."""
+    half, rows = (1.0 - gap) / 2.0, []
+    for course in range(courses):
+        left = 0.0
+        for width in [1.0] * 5 if course % 2 == 0 else [half, *[1.0] * 4, half]:
+            rows.append((left, 0.25 * course, width, 0.25))
+            left += width + gap
+    model = boxes(*rows, mu=0.6)
+    assert alphas(model) == pytest.approx((0.6, 0.6), abs=1e-7)
+    both = nonassociative_resistance(model)
+    assert (both.left.alpha, both.right.alpha) == pytest.approx((0.6, 0.6), abs=1e-7)
 
 
 @pytest.mark.parametrize(
