@@ -12,6 +12,7 @@ from drystone.poses import PoseBook
 from drystone.stabilise.memory import StabiliseMemory
 from drystone.stabilise.settings import StabiliseSettings
 from drystone.stabilise.stabilise import (
+    Support,
     WedgeStock,
     make_stable,
     rotate_to_rest,
@@ -284,3 +285,7 @@ def test_a_stone_balanced_on_a_point_is_wedged_on_both_sides_with_ids_in_a_row()
     found = StabiliseMemory(BOOK, 12.0, settings).stabilise(pillar, (BAR, 14, 2), "left", 70)
     assert [wedge.id for wedge in found.wedges] == [70, 71]
     assert holds(pillar, (BAR, 14, 2), found.wedges, 0.1)
+
+
+def test_where_a_support_is_too_short_for_both_margins_the_nearer_end_decides():
+    assert [Support(2, 6, 9, 9).falls(x, 3.0) for x in (1.9, 3.9, 4.1, 6.1)] == [-1, -1, 1, 1]
