@@ -179,7 +179,9 @@ def test_up_is_for_what_has_three_axes_and_a_unit_for_what_is_no_picture(tmp_pat
         read_stones(source, settings=ReadSettings(unit="mm"))
 
 
-@pytest.mark.parametrize(("version", "kind"), [("R2000", "bin"), ("R2018", "asc")])
+@pytest.mark.parametrize(
+    ("version", "kind"), [("R2000", "asc"), ("R2000", "bin"), ("R2018", "asc")]
+)
 def test_dxf_versions_and_binary(tmp_path, version, kind):
     path = saved(drawn(version=version), tmp_path, "drawing", fmt=kind)
     stones = read_stones(path, settings=METRIC)

@@ -177,9 +177,6 @@ def test_markers_that_give_no_scale_are_refused(found, layout, code, said):
     assert said in text
 
 
-STONE_6_CM_HIGH = camera(1200, SIZE, distance_m=0.54)
-
-
 def test_small_markers_and_a_bent_sheet_are_used_and_doubted():
     small = seen(camera(800, SIZE, distance_m=0.6), APART)
     found = list(seen(STRAIGHT, sheet_on_ground(), 0.0))

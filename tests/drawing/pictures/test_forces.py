@@ -120,6 +120,8 @@ def test_a_force_acts_at_the_only_point_or_in_the_middle(ends, normal, forces, p
     assert (one.point, one.force) == (pytest.approx(point), pytest.approx(force))
     # Idle interfaces have none, and forces of another model are refused.
     assert resultants(model, 0 * np.array(forces)) == ()
+    twice = RigidBlockModel(block, model.interfaces * 2)
+    assert len(resultants(twice, np.concatenate([0 * np.array(forces), forces]))) == 1
     with pytest.raises(ValueError, match=f"{len(forces) + 1} forces for {len(forces)} contact p"):
         resultants(model, np.array([*forces, [1.0, 0.0]]))
 

@@ -247,9 +247,10 @@ def test_a_scaled_analysis_is_that_of_the_scaled_wall():
     assert ours * factor == pytest.approx(theirs, rel=1e-6, abs=1e-6)
 
 
-def test_crops_show_their_stone(tmp_path):
+@pytest.mark.parametrize("zoom", [0.5, 1])  # smaller and larger than VIEWER_PX
+def test_crops_show_their_stone(tmp_path, zoom):
     """Of a picture whose red is its column and whose green is its row."""
-    picture = coordinates(200, 150)
+    picture = coordinates(round(400 * zoom), round(300 * zoom))
     squares = {5: box(40, 200, 120, 240), 9: box(300, 0, 400, 100), 11: box(500, 0, 600, 100)}
     crops = StonePhoto(picture, 400.0, 300.0).viewer_crops(squares)
     assert sorted(crops) == [5, 9]  # the last one is outside
