@@ -1,12 +1,10 @@
 """Hand-drawn walls whose findings are known."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from drystone.craft import RULES, Masonry
 from tests.polygons import box_of as box
 
-Loops = dict[int, NDArray[np.float64]]
 PX = 24
 """Pixels of a unit in label images."""
 
