@@ -107,7 +107,7 @@ def wall_aspect(aspect: float) -> float:
 
 
 def plot_landscape(
-    ax: Axes | None,
+    ax: Axes,
     labels: Labels,
     fill: str,
     *,
@@ -116,7 +116,7 @@ def plot_landscape(
     framed: bool = True,
     edgecolor: str = GREY,
     linewidth: float = 0.4,
-) -> Axes:
+) -> None:
     """Draw stones on the ground, y up, in working px, and the frame of their site, dashed.
 
     `fills` are the colours of single stones by id; `ground` is its depth over the height of the
@@ -124,7 +124,7 @@ def plot_landscape(
     """
     height, width = labels.shape
     depth = ground * max(height, 0.2 * width)
-    ax = fit_axes(ax, (-2.0, -depth, width + 2.0, height + 2.0))
+    fit_axes(ax, (-2.0, -depth, width + 2.0, height + 2.0))
     add(ax, ground_below((-2.0, -depth, width + 2.0, 0.0)))
     if framed:
         ax.add_patch(Rectangle((0, 0), width, height, fill=False, edgecolor=GREY, linewidth=0.6,
@@ -132,7 +132,7 @@ def plot_landscape(
     for region in label_regions(labels):
         draw_block(ax, region.loops, f"block-{region.id}", fill=fills.get(region.id, fill),
                    edgecolor=edgecolor, linewidth=linewidth)  # fmt: skip
-    return ax
+    ax.set_xlabel("working px", fontsize=7, labelpad=1)
 
 
 def masonry_panel(

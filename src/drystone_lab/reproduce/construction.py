@@ -4,9 +4,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
+import numpy as np
+
 from drystone import indices
 from drystone.kernels.lowering import Positions
-from drystone.model.landscape import Landscape, view_box
+from drystone.kernels.raster import Mask
+from drystone.model.landscape import Box, Landscape, view_box
 from drystone.model.pose import PosedStone
 from drystone.model.wall import Wall
 from drystone.placement.best import best_spots
@@ -83,52 +86,76 @@ def construction(context: Context, wall: Target = PR) -> Construction:
 
 @dataclass(frozen=True, eq=False)
 class RestingPlace:
-    """A stone where it would rest."""
+    """A stone where it would rest, and what its indices measure; working px."""
 
+    moment: Moment  # Before it is placed
     posed: PosedStone  # The stone
     row: int  # row, col: Top-left corner of its mask
     col: int
-    # SF, LFR, GDS, NHR, IWR and IS that have a meaning here: NHR beside a neighbour, IWR of an
-    # inner stone over two joints, IS of a boundary stone
-    values: Mapping[str, float]
+
+    @cached_property
+    def box(self) -> Box:
+        """Bounding box of the stone, y up from the ground."""
+        return view_box(self.posed, self.row, self.col, self.moment.landscape.height_px)
+
+    @cached_property
+    def neighbour(self) -> Box | None:
+        """Left neighbour in its course."""
+        return indices.left_neighbour(self.moment.landscape, self.box)
+
+    @cached_property
+    def below(self) -> tuple[Box | None, Box | None]:
+        """Stones below1 and below2."""
+        end_px = self.moment.workshop.stock.narrowest_px
+        return indices.joints_below(self.moment.landscape, self.box, end_px)
+
+    @cached_property
+    def values(self) -> Mapping[str, float]:
+        """SF, LFR, GDS, NHR, IWR and IS that have a meaning here.
+
+        NHR has one beside a neighbour, IWR of an inner stone over two joints, IS of a boundary
+        stone.
+        """
+        landscape, posed, box = self.moment.landscape, self.posed, self.box
+        values = {
+            "SF": indices.shape_factor(posed),
+            "LFR": indices.local_filling_ratio_at(landscape, posed, self.row, self.col),
+            "GDS": indices.geometrical_dice_score_at(landscape, posed, self.row),
+        }
+        if self.neighbour is not None:
+            values["NHR"] = indices.neighbour_height_ratio(box, self.neighbour, None)
+        end_px = self.moment.workshop.stock.narrowest_px
+        if indices.is_boundary(landscape, box, end_px):
+            values["IS"] = indices.inward_slope(landscape, posed, self.col)
+        elif box.bottom > 0 and None not in self.below:
+            values["IWR"] = indices.interlocking_width_ratio(landscape, box, end_px)
+        return values
 
     @property
     def order(self) -> tuple[int, int, int]:
         """Lower places first, then those further to the left, then the smaller id."""
         return -(self.row + self.posed.height_px), self.col, self.posed.stone.id
 
-
-def place_of(moment: Moment, posed: PosedStone, row: int, col: int, factor: float) -> RestingPlace:
-    """Return a place with its indices."""
-    landscape, end_px = moment.landscape, moment.workshop.stock.narrowest_px
-    box = view_box(posed, row, col, landscape.height_px)
-    values = {
-        "SF": factor,
-        "LFR": indices.local_filling_ratio_at(landscape, posed, row, col),
-        "GDS": indices.geometrical_dice_score_at(landscape, posed, row),
-    }
-    neighbour = indices.left_neighbour(landscape, box)
-    if neighbour is not None:
-        values["NHR"] = indices.neighbour_height_ratio(box, neighbour, None)
-    if indices.is_boundary(landscape, box, end_px):
-        values["IS"] = indices.inward_slope(landscape, posed, col)
-    elif box.bottom > 0 and None not in indices.joints_below(landscape, box, end_px):
-        values["IWR"] = indices.interlocking_width_ratio(landscape, box, end_px)
-    return RestingPlace(posed, row, col, values)
+    @property
+    def pixels(self) -> Mask:
+        """The stone in an image as large as the landscape."""
+        image = np.zeros(self.moment.wall.labels.shape, bool)
+        height, width = self.posed.mask.shape
+        image[self.row : self.row + height, self.col : self.col + width] = self.posed.mask
+        return image
 
 
-def amid_course(built: Construction) -> tuple[Moment, RestingPlace]:
-    """Return a stone of a run that has a left neighbour and two joints below, and when it came.
+def amid_course(built: Construction) -> RestingPlace:
+    """Return a stone of a run that has a left neighbour and two joints below, where it was placed.
 
-    The first in the second half of the run, or else the stone that comes next halfway; where it
-    was placed.
+    The first in the second half of the run, or else the stone that comes next halfway.
     """
     half = len(built.stages) // 2
     found = []
     for moment, stage in zip(built.moments[half:], built.stages[half:], strict=True):
         at = stage.group.placement
-        place = place_of(moment, at.posed, at.row, at.col, indices.shape_factor(at.posed))
+        place = RestingPlace(moment, at.posed, at.row, at.col)
         if {"NHR", "IWR"} <= place.values.keys():
-            return moment, place
-        found.append((moment, place))
+            return place
+        found.append(place)
     return found[0]

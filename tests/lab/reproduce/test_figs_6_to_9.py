@@ -1,19 +1,22 @@
 """Figs. 6 and 7, indices; Fig. 8, positions; Fig. 9, stones that fall: on small walls."""
 
 import math
+from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
-from drystone.model.landscape import Box
-from drystone.model.placement import Wedge
+from drystone.model.placement import Placement, Wedge
 from drystone.model.pose import PosedStone
+from drystone.model.site import Site
 from drystone.model.stone import Stone
+from drystone.model.wall import Wall
 from drystone.stabilise.stabilise import Support
 from drystone_lab.reproduce import fig6_7, fig8, fig9
-from drystone_lab.reproduce.construction import amid_course
+from drystone_lab.reproduce.construction import Moment, RestingPlace, amid_course
 from tests.lab.reproduce.small_walls import RUBBLE, SHARP, built, gids, of, rows
 from tests.naive import indices as naive
 from tests.naive.rays import local_filling_ratio
@@ -24,6 +27,16 @@ def slab(height, width):
     """A stone that is a rectangle."""
     mask = np.ones((height, width), bool)
     return PosedStone(Stone(9, mask), 0.0, 1.0, mask, (width / 2, height / 2))
+
+
+def resting(height, width, stone, at, *others):
+    """A stone on a wall of others, which are numbered from 1."""
+    wall = Wall.empty(Site(width, height))
+    for number, (row, col, posed) in enumerate(others, 1):
+        numbered = replace(posed, stone=Stone(number, posed.mask))
+        wall = wall.add(Placement(numbered, row, col))
+    shop = SimpleNamespace(stock=SimpleNamespace(narrowest_px=1))
+    return RestingPlace(Moment(1, wall, shop, None), stone, *at)
 
 
 @pytest.fixture(scope="module")
@@ -43,11 +56,11 @@ def amid(folder):
 
 @pytest.fixture(scope="module")
 def places(amid):
-    return fig6_7.resting_places(amid[0])
+    return fig6_7.resting_places(amid.moment)
 
 
 def test_places_are_all_at_which_a_stone_rests(amid, places):
-    moment = amid[0]
+    moment = amid.moment
     posed = moment.workshop.poses(moment.remaining[0])[0]
     occupied, mask = moment.wall.occupied, posed.mask
     height, width = occupied.shape
@@ -71,12 +84,11 @@ def test_extremes_are_the_least_and_the_largest(outputs, places):
         assert row["value"] == pytest.approx(max(values) if best else min(values), abs=1e-4)
 
 
-def test_counting_again_agrees_everywhere(amid, places):
+def test_counting_again_agrees_everywhere(places):
     seen = set()
     for place in places[::7]:
-        action = fig6_7.action_at(amid[0], place.posed, place.row, place.col)
         for name in place.values.keys() - {"SF"}:
-            again = fig6_7.recounted(action, name)
+            again = fig6_7.recounted(place, name)
             if again is not None:
                 assert again == pytest.approx(place.values[name], abs=1e-12), (name, place.order)
                 seen.add(name)
@@ -84,7 +96,7 @@ def test_counting_again_agrees_everywhere(amid, places):
 
 
 def test_the_stone_of_fig7_stands_where_the_run_left_it(folder, outputs, amid):
-    stage = built(folder, RUBBLE).stages[amid[0].number - 1]
+    stage = built(folder, RUBBLE).stages[amid.moment.number - 1]
     table = rows(outputs["fig6-7"], "fig7")
     assert {row["stone"] for row in table} == {stage.group.placement.stone_id}
     assert {row["index"] for row in table} >= {"NHR", "IWR"}
@@ -99,19 +111,19 @@ def test_the_stone_of_fig7_stands_where_the_run_left_it(folder, outputs, amid):
 
 
 def test_only_what_is_asked_for_is_marked():
-    labels, swept = np.zeros((10, 20), np.uint32), np.zeros((10, 20), bool)
-    labels[6:, :6], labels[6:, 6:12], labels[2:6, :5] = 1, 2, 3
-    swept[3:6, :5] = swept[6:, 5:9] = True
-    below = (1, Box(0, 6, 0, 4)), (2, Box(6, 12, 0, 4))
-    action = fig6_7.ActionView(
-        labels, slab(3, 4), 3, 5, swept, 8, (3, Box(0, 5, 4, 8)), below, (0, 3)
-    )
+    place = resting(10, 20, slab(3, 4), (3, 5), (6, 0, slab(4, 6)), (6, 6, slab(4, 6)),
+                    (2, 0, slab(4, 5)))  # fmt: skip
+
+    def plotted(names):
+        ax = Figure().add_subplot()
+        fig6_7.plot_indices(place, names, ax)
+        return ax, {patch.get_gid(): patch for patch in ax.patches}
 
     def drawn(ax, gid):
         return [line.get_xydata().tolist() for line in ax.lines if line.get_gid() == gid]
 
-    ax = fig6_7.plot_action(action, {"neighbour"})
-    fills = {patch.get_gid(): to_hex(patch.get_facecolor()) for patch in ax.patches}
+    ax, patches = plotted({"NHR"})
+    fills = {gid: to_hex(patch.get_facecolor()) for gid, patch in patches.items()}
     assert fills["block-3"] == fig6_7.NEIGHBOUR
     assert fills["block-1"] == fills["block-2"] == fig6_7.BUILT
     assert fills["stone"] == fig6_7.STONE
@@ -120,13 +132,14 @@ def test_only_what_is_asked_for_is_marked():
     assert drawn(ax, "top") == [[[0, 7], [9, 7]], [[0, 8], [9, 8]]]
     assert drawn(ax, "difference") == [[[4.5, 7], [4.5, 8]]]
     # Joints are the top corners of the stones below.
-    ax = fig6_7.plot_action(action, {"joints", "rays", "box", "begun", "slope"})
-    patches = {patch.get_gid(): patch for patch in ax.patches}
+    ax, patches = plotted({"IWR", "LFR", "SF", "GDS", "IS"})
     for block in ("block-1", "block-2"):
         assert to_hex(patches[block].get_facecolor()) == fig6_7.BELOW
     assert drawn(ax, "joint") == [[[6, 4]], [[6, 4]]]
     assert drawn(ax, "offset") == [[[5, 4], [6, 4]], [[9, 4], [6, 4]]]
     assert drawn(ax, "slope") == [[[5.5, 7], [8.5, 7]]]
+    swept = np.zeros((10, 20), bool)
+    swept[3:6, :5] = swept[6:, 5:9] = True
     np.testing.assert_array_equal(ax.images[0].get_array()[..., 3] > 0, swept)
     assert patches["box"].get_bbox().bounds == (5, 4, 4, 3)
     assert patches["begun"].get_bbox().bounds == (0, 0, 20, 8)
@@ -134,8 +147,7 @@ def test_only_what_is_asked_for_is_marked():
 
 @pytest.fixture(scope="module")
 def trial(amid):
-    moment, place = amid
-    return moment, moment.trial(place.posed.stone.id)
+    return amid.moment, amid.moment.trial(amid.posed.stone.id)
 
 
 def naive_maps(occupied, mask):
@@ -156,11 +168,9 @@ def naive_maps(occupied, mask):
 
 def test_maps_are_those_of_every_position_and_so_are_counts(outputs, trial):
     moment, (posed, *_) = trial
-    maps = fig8.PositionMaps.of(moment.wall.occupied, posed.mask)
+    found = fig8.position_maps(moment.wall.occupied, posed.mask)
     free, floating = naive_maps(moment.wall.occupied, posed.mask)
-    np.testing.assert_array_equal(maps.free, free)
-    np.testing.assert_array_equal(maps.floating, floating)
-    assert not np.any(maps.touching & maps.floating)
+    np.testing.assert_array_equal(found, (free, floating))
     below = np.vstack([free[1:], np.zeros_like(free[:1])])
     resting = np.count_nonzero(free & ~below)
     counts = [row["count"] for row in rows(outputs["fig8"], "positions")]
@@ -204,7 +214,8 @@ def test_positions_and_their_values_are_drawn_at_the_centroids():
     assert (x, y) == (5.0, 3.0)
     # The stone is at the chosen one.
     positions, worth = np.array([[2, 0], [2, 1], [4, 5]]), np.array([1.0, 0.9, 0.5])
-    fig8.plot_position_values(values, site, slab(2, 4), positions, worth, (2, 0))
+    place = resting(6, 10, slab(2, 4), (2, 0), (4, 0, slab(2, 5)))
+    fig8.plot_position_values(values, place, positions, worth)
     (dots,) = [one for one in values.collections if one.get_gid() == "values"]
     np.testing.assert_allclose(dots.get_offsets(), [[2, 3], [3, 3], [7, 1]])
     np.testing.assert_allclose(dots.get_array(), worth)
