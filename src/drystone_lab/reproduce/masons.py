@@ -24,7 +24,7 @@ from drystone_lab.pictures import walls as sheets
 from drystone_lab.reproduce import cells
 from drystone_lab.reproduce.cells import METRICS, rounded
 from drystone_lab.reproduce.item import Context, ItemFigure, PaperItem, Rows
-from drystone_lab.reproduce.study import Study, StudyWalls, Trials
+from drystone_lab.reproduce.study import Study, StudyWalls, Trials, medians, of_each
 from drystone_lab.runs.outcome import RunOutcome
 from drystone_lab.table import Cell
 from drystone_lab.walls import FIVE, MASONS, Target
@@ -133,14 +133,6 @@ class TracedWall:
         return sheets.masonry_panel(title, labels, self.clusters, 1 / self.wall.scale)
 
 
-class Treatment(NamedTuple):
-    """F_LR for one way to treat the gaps; without one the status says what the wall does."""
-
-    name: str
-    F_LR: float | None
-    status: str
-
-
 def masons_wall(wall: Target, data: Path | None) -> TracedWall:
     """Read a published wall and bring it to the working scale."""
     if data is None:
@@ -149,8 +141,11 @@ def masons_wall(wall: Target, data: Path | None) -> TracedWall:
     return TracedWall(wall, labels, cluster_stones(wall.source.stones(data), PoseBook(wall.scale)))
 
 
-def treatments(wall: TracedWall) -> tuple[Treatment, ...]:
-    """Return F_LR of a wall as it was traced and with its gaps treated in all ways."""
+def treatments(wall: TracedWall) -> Iterator[tuple[str, float | None, str]]:
+    """Yield F_LR of a wall as it was traced and with its gaps treated in all ways.
+
+    The name of the way, F_LR, and the status, which says what a wall without it does.
+    """
     labels = wall.labels
     models = {
         "as traced": model_from_labels(labels).model,
@@ -163,12 +158,10 @@ def treatments(wall: TracedWall) -> tuple[Treatment, ...]:
         "lowered and pushed right": model_from_labels(settle_gaps(labels, "right")[0]).model,
         PAPERS_WAY: model_from_labels(wall.papers_way).model,
     }
-    found = []
     for name, model in models.items():
         both = lateral_resistance(model)
         told = next((end for end in (both.left, both.right) if end.alpha is None), both.left)
-        found.append(Treatment(name, both.value, str(told.status)))
-    return tuple(found)
+        yield name, rounded(both.value), str(told.status)
 
 
 def measured(labels: Labels) -> WallMetrics:
@@ -177,17 +170,13 @@ def measured(labels: Labels) -> WallMetrics:
     return measure_labels(labels, lateral_resistance=resistance.value)
 
 
-TreatedWalls = Sequence[tuple[TracedWall, tuple[Treatment, ...]]]
+def masons_walls(context: Context, walls: Sequence[Target] = MASONS) -> list[TracedWall]:
+    """Read walls."""
+    return [masons_wall(wall, context.data) for wall in walls]
 
 
-def treated_walls(context: Context, walls: Sequence[Target] = MASONS) -> TreatedWalls:
-    """Read walls, and treat their gaps in all ways."""
-    found = [masons_wall(wall, context.data) for wall in walls]
-    return [(wall, treatments(wall)) for wall in found]
-
-
-def _metrics(walls: TreatedWalls) -> Rows:
-    for each, _ in walls:
+def _metrics(walls: Sequence[TracedWall]) -> Rows:
+    for each in walls:
         for name, labels in each.both:
             ours = measured(labels)
             size = f"{ours.width:.0f} x {ours.height:.0f}"
@@ -196,10 +185,10 @@ def _metrics(walls: TreatedWalls) -> Rows:
         yield each.wall.name, "paper, Table 2", None, None, *REFERENCES[each.wall.number]
 
 
-def _gaps_picture(walls: TreatedWalls) -> ItemFigure:
+def _gaps_picture(walls: Sequence[TracedWall]) -> ItemFigure:
     panels = [
         each.panel(f"{each.wall.name}, {name}", labels)
-        for each, _ in walls
+        for each in walls
         for name, labels in (
             ("as traced", each.labels),
             ("drawn together, dilated", each.papers_way),
@@ -209,13 +198,11 @@ def _gaps_picture(walls: TreatedWalls) -> ItemFigure:
 
 
 FIG13 = PaperItem(
-    study=treated_walls,
+    study=masons_walls,
     tables={
         "fig13": _metrics,
         "fig13_resistance": lambda walls: [
-            (wall.wall.name, way.name, rounded(way.F_LR), way.status)
-            for wall, ways in walls
-            for way in ways
+            (wall.wall.name, *treated) for wall in walls for treated in treatments(wall)
         ],
     },
     pictures=lambda walls: [_gaps_picture(walls)],
@@ -256,14 +243,23 @@ def tenths(value: float) -> int:
 
 
 class FiveWall(NamedTuple):
-    """One of the five walls: its trials, its stones, and what masons built from them, if any did.
+    """One of the five walls: its trials, and what masons built from its stones, if any did.
 
     The first trial is that of the fixed seed.
     """
 
-    trials: Trials
-    stones: StoneSet
+    built: StudyWalls
     masons: TracedWall | None
+
+    @property
+    def trials(self) -> Trials:
+        """Of the one set."""
+        return self.built.all[0]
+
+    @property
+    def stones(self) -> StoneSet:
+        """All that there are."""
+        return self.trials.wall.source.stones(self.built.context.data)
 
     @property
     def name(self) -> tuple[int, str]:
@@ -276,16 +272,14 @@ class FiveWall(NamedTuple):
         return best_trial(self.trials.outcomes)
 
 
-Five = tuple[StudyWalls, Sequence[FiveWall]]
-
-
-def five_walls(found: StudyWalls) -> Five:
+def five_walls(found: StudyWalls) -> list[FiveWall]:
     """Read the masons' walls."""
-    walls, data = [], found.context.data
-    for each in found:
-        masons = None if each.wall.stand_in else masons_wall(each.wall, data)
-        walls.append(FiveWall(each, each.wall.source.stones(data), masons))
-    return found, walls
+    walls = []
+    for built in found.by_wall:
+        wall = built.all[0].wall
+        masons = None if wall.stand_in else masons_wall(wall, found.context.data)
+        walls.append(FiveWall(built, masons))
+    return walls
 
 
 def _references(wall: FiveWall) -> Iterator[tuple[Cell, ...]]:
@@ -322,8 +316,8 @@ def _ours(wall: FiveWall) -> Iterator[tuple[Cell, ...]]:
     yield *wall.name, "all stones", count, count, most, None, None, None, *NONE
 
 
-def _five_panels(built: StudyWalls, wall: FiveWall) -> list[sheets.Panel]:
-    trials, stones = wall.trials, wall.stones
+def _five_panels(wall: FiveWall) -> list[sheets.Panel]:
+    built, trials, stones = wall.built, wall.trials, wall.stones
     seeds = [spec.seed for spec in trials.specs]
     clusters = cluster_stones(stones, PoseBook(trials.wall.scale))
     title = f"Wall {trials.wall.number}, {trials.wall.name}\n"
@@ -344,19 +338,14 @@ TABLE2 = PaperItem(
     study=Study(walls=FIVE, quick_seeds=2, then=five_walls),
     tables={
         # Rows of each wall, our figures and the paper's beside each other
-        "table2": lambda found: [
-            row for wall in found[1] for row in (*_references(wall), *_ours(wall))
+        "table2": lambda walls: [
+            row for wall in walls for row in (*_references(wall), *_ours(wall))
         ],
-        "table2_seeds": lambda found: [
-            (*wall.name, *cells.summary(wall.trials.outcomes)) for wall in found[1]
-        ],
+        "table2_seeds": of_each(medians("number", "name")),
     },
-    pictures=lambda found: [
+    pictures=lambda walls: [
         ItemFigure(
-            "fig18",
-            sheets.sheet_of(
-                [panel for wall in found[1] for panel in _five_panels(found[0], wall)], 4
-            ),
+            "fig18", sheets.sheet_of([panel for wall in walls for panel in _five_panels(wall)], 4)
         )
     ],
 )

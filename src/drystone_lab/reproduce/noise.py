@@ -1,6 +1,6 @@
 """Figs. 22 to 24: polygons of eight noise levels; Fig. 25: orientations in steps (§5.3)."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from itertools import cycle
 from pathlib import Path
 from statistics import median
@@ -18,7 +18,7 @@ from drystone_lab.pictures.walls import plot_walls
 from drystone_lab.reproduce import study
 from drystone_lab.reproduce.cells import LEVEL, figures_of, rounded, trend
 from drystone_lab.reproduce.item import Claimed, ItemFigure, PaperItem, Rows
-from drystone_lab.reproduce.study import Study, StudyWalls, Trials, each_wall, medians
+from drystone_lab.reproduce.study import Study, StudyWalls, Trials, each_wall, medians, of_each
 from drystone_lab.runs.outcome import RunOutcome
 from drystone_lab.walls import NOISES, NOISY, TWO_SIDED, Target, coarser, generated_noise
 
@@ -201,10 +201,6 @@ def _references(levels: NoiseLevels) -> Rows:
         yield level.noise, of.stones, *map(rounded, (of.F_SF, of.F_AV, of.F_AH, *wall.resistances))
 
 
-def _of_all(rows: Callable[[StudyWalls], Rows]) -> Callable[[NoiseLevels], Rows]:
-    return lambda levels: (row for level in levels for row in rows(level.built))
-
-
 def _noise_pictures(levels: NoiseLevels) -> Iterator[ItemFigure]:
     walls = []
     for level in levels:
@@ -274,9 +270,9 @@ NOISE = PaperItem(
     ),
     claims=noise_findings,
     tables={
-        "levels": _of_all(medians("number", "said", "way")),
+        "levels": of_each(medians("number", "said", "way")),
         "reference": _references,
-        "walls": _of_all(
+        "walls": of_each(
             each_wall(
                 "number", "said", "way", "seed", "placed", "stones",
                 extra=lambda outcome: (is_full(outcome),),

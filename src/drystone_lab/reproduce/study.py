@@ -164,6 +164,11 @@ def each_wall(
     ]
 
 
+def of_each(rows: Callable[[StudyWalls], Rows]) -> Callable[[Any], Rows]:
+    """Return rows of several groups of walls, each of which is `built`."""
+    return lambda groups: (row for group in groups for row in rows(group.built))
+
+
 def pairs(way: str, others: Sequence[str]) -> Callable[[StudyWalls], Rows]:
     """Return rows of one way against others, pairs of one set and seed, by figure."""
     return lambda found: [
