@@ -19,9 +19,10 @@ from drystone.metrics.shape import top_profile
 from drystone.model.site import Site
 from drystone.model.stone import StoneSet
 from drystone.planner.settings import PlannerSettings
+from drystone.planner.workshop import Workshop
 from drystone.selection.policies.learned import FEATURES, features
 from drystone_lab.rl.draw import DrawSettings, draw_wall
-from drystone_lab.rl.episode import ARRIVING, Episode, prepared
+from drystone_lab.rl.episode import ARRIVING, Episode
 
 Floats32 = NDArray[np.float32]
 WallObservation = dict[str, Floats32]
@@ -173,9 +174,8 @@ class WallEnv(gymnasium.Env[WallObservation, np.int64]):
         """
         super().reset(seed=seed)
         stones, site, order = self._given(options or {})
-        self._episode = Episode(
-            prepared(stones, site, self.settings), order, self.settings, self._offers
-        )
+        workshop = Workshop.prepare(stones, site, self.settings)
+        self._episode = Episode(workshop, order, self.settings, self._offers)
         self._potential = self._episode.potential
         self._ended = False
         return self._told(illegal=False)

@@ -4,8 +4,6 @@ from collections.abc import Sequence
 from copy import copy
 from dataclasses import replace
 
-from drystone.model.site import Site
-from drystone.model.stone import StoneSet
 from drystone.placement.settings import PlacementSettings
 from drystone.planner.attempt import Attempt
 from drystone.planner.build import Build, Candidate
@@ -25,11 +23,6 @@ ARRIVING = PlannerSettings(
 )
 """How stones that arrive are offered unless said otherwise: pixels, the pose of largest SF and its
 quarter turns, from both ends, the first of four places at which the stone can be made stable."""
-
-
-def prepared(stones: StoneSet, site: Site, settings: PlannerSettings = ARRIVING) -> Workshop:
-    """Return the workshop of some episodes."""
-    return Workshop.prepare(stones, site, settings)
 
 
 class Episode:

@@ -9,7 +9,6 @@ import argparse
 import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import NamedTuple
 
 import numpy as np
 from scipy.stats import t as student
@@ -20,8 +19,9 @@ from drystone.planner.settings import PlannerSettings
 from drystone.planner.workshop import Workshop
 from drystone.search.goal import figures_of, merit_of, possible_filling
 from drystone.selection.policies.registry import rule_of
+from drystone_lab.paired import COVERED
 from drystone_lab.rl.draw import KINDS, DrawSettings, draw_wall
-from drystone_lab.rl.episode import ARRIVING, prepared
+from drystone_lab.rl.episode import ARRIVING
 from drystone_lab.rl.train import HELD_OUT
 from drystone_lab.table import markdown_rows
 
@@ -33,44 +33,26 @@ POLICIES = ("learned", "random", "lowest", "scalarised", "filter", "towers", "pa
 FREE = replace(ARRIVING, order="free", sampling="variant")
 """The same places, offered for one stone of each cluster that is left."""
 
-COVERED = 0.95
-"""Of the intervals."""
 
-PolicyFigures = Mapping[str, Sequence[float]]
-"""The figures of some walls by their names."""
+def difference(values: Sequence[float]) -> tuple[float, float]:
+    """Return the mean of some differences, and half the width of its interval by Student's t.
 
+    The half is infinite for a single difference.
 
-class Interval(NamedTuple):
-    """A mean, and where that of all walls of their kind lies."""
-
-    mean: float
-    half: float  # Half the width of the interval by Student's t; infinite for a single difference
-
-    @classmethod
-    def of(cls, differences: Sequence[float]) -> "Interval":
-        """Return the interval of some differences.
-
-        >>> Interval.of([1.0, 1.0, 1.0])
-        Interval(mean=1.0, half=0.0)
-        """
-        count = len(differences)
-        if count < 2:
-            return cls(float(np.mean(differences)), float("inf"))
-        error = float(np.std(differences, ddof=1)) / count**0.5
-        quantile = float(student.ppf(0.5 + COVERED / 2, count - 1))
-        return cls(float(np.mean(differences)), quantile * error)
-
-    @property
-    def text(self) -> str:
-        """The interval as a cell; starred when it does not contain 0."""
-        star = "*" if abs(self.mean) > self.half else ""
-        return f"{self.mean:+.3f} ± {self.half:.3f}{star}"
+    >>> difference([1.0, 1.0, 1.0])
+    (1.0, 0.0)
+    """
+    mean, count = float(np.mean(values)), len(values)
+    if count < 2:
+        return mean, float("inf")
+    quantile = float(student.ppf(0.5 + COVERED / 2, count - 1))
+    return mean, quantile * float(np.std(values, ddof=1)) / count**0.5
 
 
 def held_out_wall(kind: str, number: int, draw: DrawSettings) -> Workshop:
     """Return a wall that no training with these seeds has had."""
     rng = np.random.default_rng([HELD_OUT, list(KINDS).index(kind), number])
-    return prepared(*draw_wall(replace(draw, kinds=(kind,)), rng))
+    return Workshop.prepare(*draw_wall(replace(draw, kinds=(kind,)), rng), ARRIVING)
 
 
 def figures_by(
@@ -94,7 +76,7 @@ def figures_by(
     return found
 
 
-def report(found: Mapping[str, PolicyFigures], title: str) -> str:
+def report(found: Mapping[str, Mapping[str, Sequence[float]]], title: str) -> str:
     """Return the means of each policy, and what the first has more than each of the others."""
     first, *others = found
     means = [
@@ -103,8 +85,11 @@ def report(found: Mapping[str, PolicyFigures], title: str) -> str:
     ]
     paired = []
     for other in others:
-        more = (np.subtract(found[first][name], found[other][name]) for name in FIGURES)
-        paired.append([other, *(Interval.of(each.tolist()).text for each in more)])
+        cells = [other]
+        for name in FIGURES:
+            mean, half = difference(np.subtract(found[first][name], found[other][name]).tolist())
+            cells.append(f"{mean:+.3f} ± {half:.3f}{'*' if abs(mean) > half else ''}")
+        paired.append(cells)
     return "\n\n".join(
         [
             f"{title}: means",

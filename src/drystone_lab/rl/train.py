@@ -25,7 +25,7 @@ from drystone.selection.policies.learned import FEATURES, ValueModel, features, 
 from drystone.selection.policy import Offer
 from drystone.whole_files import refuse_existing
 from drystone_lab.rl.draw import DrawSettings, draw_wall
-from drystone_lab.rl.episode import Episode, prepared
+from drystone_lab.rl.episode import ARRIVING, Episode
 
 Floats = NDArray[np.float64]
 
@@ -195,7 +195,7 @@ def _workshop(settings: TrainSettings, number: int) -> Workshop:
     kinds = settings.draw.kinds
     draw = replace(settings.draw, kinds=(kinds[number % len(kinds)],))
     rng = np.random.default_rng([settings.seed, 2, number])
-    return prepared(*draw_wall(draw, rng))
+    return Workshop.prepare(*draw_wall(draw, rng), ARRIVING)
 
 
 def main(argv: Sequence[str] | None = None) -> int:

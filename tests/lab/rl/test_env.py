@@ -16,12 +16,13 @@ from drystone.errors import DrystoneError, UsageError
 from drystone.generate import BrickSettings, brick_stones
 from drystone.model.site import Site
 from drystone.planner.planner import Planner
+from drystone.planner.workshop import Workshop
 from drystone.search.goal import WallFigures, figures_of, merit_of, possible_filling
 from drystone.selection.policies.choices import LOWEST
 from drystone.selection.policies.learned import FEATURES, features
 from drystone_lab.rl.draw import KINDS, DrawSettings, draw_wall, in_order
 from drystone_lab.rl.env import WallEnv
-from drystone_lab.rl.episode import ARRIVING, Episode, prepared
+from drystone_lab.rl.episode import ARRIVING, Episode
 
 SMALL = DrawSettings(kinds=("brick", "polygon"), stones=7, size_px=12.0)
 
@@ -217,7 +218,7 @@ def test_builds_the_wall_of_the_planner_with_the_same_policy():
     settings = replace(ARRIVING, selection_rule="lowest")
     for seed in range(2):
         stones, site = draw_wall(SMALL, np.random.default_rng(seed))
-        episode = Episode(prepared(stones, site))
+        episode = Episode(Workshop.prepare(stones, site, ARRIVING))
         while not episode.over:
             episode.take(LOWEST.choose(episode.offers, np.random.default_rng(0)))
         planner = Planner(stones, site, settings=settings)
@@ -229,14 +230,14 @@ def test_builds_the_wall_of_the_planner_with_the_same_policy():
 
 
 def test_a_wall_is_over_when_stones_are_put_aside_for_good_or_it_is_full():
-    episode, seen = Episode(prepared(*bricks(3))), []
+    episode, seen = Episode(Workshop.prepare(*bricks(3), ARRIVING)), []
     while not episode.over:
         assert (episode.aside, episode.build.actions) == (len(seen), ())
         seen.append(episode.stone_id)
         episode.take(None)
     assert sorted(seen) == [1, 2, 3]
     assert (episode.aside, episode.merit, episode.potential) == (3, 0.0, 0.0)
-    episode = Episode(prepared(*bricks(6)))
+    episode = Episode(Workshop.prepare(*bricks(6), ARRIVING))
     while not episode.over:
         lying = [k for k, offer in enumerate(episode.offers) if offer.width_px == 20]
         episode.take(lying[0])
@@ -245,7 +246,7 @@ def test_a_wall_is_over_when_stones_are_put_aside_for_good_or_it_is_full():
 
 
 def test_keeps_the_lowest_of_the_offers():
-    workshop = prepared(*bricks())
+    workshop = Workshop.prepare(*bricks(), ARRIVING)
     every, few = Episode(workshop).offers, Episode(workshop, most=3).offers
     heights, kept = ([offer.centroid_px[1] for offer in offers] for offers in (every, few))
     assert len(heights) > 3

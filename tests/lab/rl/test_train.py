@@ -7,10 +7,11 @@ import pytest
 
 from drystone.errors import ExitCode, UsageError
 from drystone.model.site import Site
+from drystone.planner.workshop import Workshop
 from drystone.selection.policies.learned import FEATURES, learned, model_from_json, shipped_model
 from drystone_lab.rl import train
 from drystone_lab.rl.draw import DrawSettings, draw_wall
-from drystone_lab.rl.episode import Episode, prepared
+from drystone_lab.rl.episode import ARRIVING, Episode
 from tests.lab.rl.test_env import bricks
 
 TINY = train.TrainSettings(
@@ -36,7 +37,8 @@ def test_equal_seeds_equal_bytes():
 
 def test_shipped_weights_are_of_the_settings_of_today_and_beat_random_on_other_walls():
     draw = DrawSettings(kinds=train.TRAINED_ON, stones=9, size_px=12.0)
-    walls = [prepared(*draw_wall(draw, np.random.default_rng([9, k]))) for k in range(6)]
+    drawn = [draw_wall(draw, np.random.default_rng([9, k])) for k in range(6)]
+    walls = [Workshop.prepare(*one, ARRIVING) for one in drawn]
     by_value = train.mean_merit(learned().choose, walls)
     assert by_value > train.mean_merit(train.at_random, walls) + 0.3
     trained, settings = shipped_model().trained, train.TrainSettings()
@@ -66,7 +68,7 @@ def test_walls_without_a_choice_teach_nothing(tmp_path):
     few = ["-o", str(tmp_path / "w.json"), "--stones", "2"]
     assert train.main(few) == ExitCode.USAGE
     stones, _ = bricks(3)
-    workshop = prepared(stones, Site(5, 5))
+    workshop = Workshop.prepare(stones, Site(5, 5), ARRIVING)
     assert train.branching(workshop, train.at_random, (1,)) is None
     assert train.finished(Episode(workshop), train.at_random, np.random.default_rng(0)) == 0.0
 
