@@ -33,8 +33,6 @@ class Score:
     precision: float
     # Intersection over union of every stone with what covers it best, in the order of the stones
     ious: tuple[float, ...]
-    # Largest error of distances between places of the ground; None without a scale
-    scale_error_percent: float | None
 
 
 def run(settings: BenchSettings) -> tuple[Table, ...]:
@@ -61,7 +59,7 @@ def _real_row(photo: RealPhoto, data: Path | None) -> tuple[Cell, ...]:
     try:
         result = segment_photo(image)
     except DrystoneError as error:
-        count = None if full is None else int(whole_stones(full).max())
+        count = None if full is None else len(whole_stones(full))
         return (*about, count, 0, None, None, None, error.code, int(error.exit_code))
     doubtful = verdict_of(result.found, doubts_of(result.found))
     said = "doubtful" if doubtful else "found"
@@ -69,48 +67,40 @@ def _real_row(photo: RealPhoto, data: Path | None) -> tuple[Cell, ...]:
     height, width = result.found.labels.shape
     if full is None:
         return (*about, None, result.found.count, None, None, None, said, code)
-    scaled = Image.fromarray(full.astype(np.int32)).resize((width, height), 0)
-    truth = whole_stones(np.asarray(scaled).astype(np.uint16))
-    iou = overlaps(truth, result.found.labels)
-    best = iou.max(axis=1)
-    matched = int((iou.max(axis=0) >= MATCHED).sum())
-    found = best[best >= MATCHED]
+    truth = np.asarray(Image.fromarray(full.astype(np.int32)).resize((width, height), 0))
+    got = _compared(truth.astype(np.uint16), whole_stones(truth), result.found.labels)
+    found = [iou for iou in got.ious if iou >= MATCHED]
     return (
-        *about, len(best), result.found.count, round(len(found) / len(best), 3),
-        None if photo.part else round(matched / result.found.count, 3),
-        round(float(np.median(found)), 3) if len(found) else None, said, code,
+        *about, got.stones, got.found, round(got.recall, 3),
+        None if photo.part else round(got.precision, 3),
+        round(float(np.median(found)), 3) if found else None, said, code,
     )  # fmt: skip
 
 
-def whole_stones(truth: NDArray[np.uint16]) -> NDArray[np.uint16]:
-    """Return the stones that the edge of the picture does not cut, numbered anew."""
-    kept = _whole(truth)
-    new = np.zeros(int(truth.max()) + 1, np.uint16)
-    new[kept] = np.arange(1, len(kept) + 1)
-    return np.asarray(new[truth])
-
-
-def _whole(truth: NDArray[np.uint16]) -> NDArray[np.uint16]:
+def whole_stones(truth: NDArray[np.integer]) -> NDArray[np.int64]:
     """Return the numbers of the stones that the edge of the picture does not cut."""
     rim = np.concatenate([truth[0], truth[-1], truth[:, 0], truth[:, -1]])
-    return np.setdiff1d(truth, np.append(rim, 0))
+    return np.setdiff1d(truth, np.append(rim, 0)).astype(np.int64)
 
 
 def score(made: Photograph, result: SegmentedPhoto) -> Score:
-    """Compare what was found with what is there."""
+    """Compare what was found in a rendered photograph with what is there."""
     labels = result.found.labels
     truth = made.truth_in(np.linalg.inv(result.from_photo), labels.shape)
     frame = made.truth_in(np.eye(3), (made.level.height_px, made.level.width_px))
-    whole = _whole(frame).astype(int)
-    iou = overlaps(truth, labels)
-    best = iou[whole - 1].max(axis=1)
+    return _compared(truth, whole_stones(frame), labels)
+
+
+def _compared(
+    truth: NDArray[np.uint16], whole: NDArray[np.int64], labels: NDArray[np.uint16]
+) -> Score:
+    """Compare the stones that are whole with those that were found."""
+    iou = overlaps(truth, labels)[whole - 1]
+    best, count = iou.max(axis=1), iou.shape[1]
     # What is found of a stone that is cut is no mistake of telling stones from ground.
-    matched = (iou[whole - 1].max(axis=0) >= MATCHED).sum()
-    return Score(
-        len(whole), result.found.count, float((best >= MATCHED).mean()),
-        float(matched / result.found.count), tuple(best.tolist()),
-        _scale_error(made, result),
-    )  # fmt: skip
+    matched = int((iou.max(axis=0) >= MATCHED).sum())
+    recall = float((best >= MATCHED).mean())
+    return Score(len(whole), count, recall, matched / count, tuple(best.tolist()))
 
 
 def overlaps(truth: NDArray[np.uint16], labels: NDArray[np.uint16]) -> NDArray[np.float64]:
@@ -161,11 +151,11 @@ def _row(level: PhotoLevel) -> tuple[Cell, ...]:
     except DrystoneError as error:
         return (level.name, int(made.truth.max()), error.code, *[None] * 7)
     seconds = time.perf_counter() - start
-    got = score(made, result)
+    got, scale_error = score(made, result), _scale_error(made, result)
     return (
         level.name, got.stones, got.found, round(got.recall, 3), round(got.precision, 3),
         round(float(np.median(got.ious)), 3), round(min(got.ious), 3),
-        None if got.scale_error_percent is None else round(got.scale_error_percent, 3),
+        None if scale_error is None else round(scale_error, 3),
         f"{level.shadow:g} / {1 - result.found.shadow_level:.2f}", round(seconds, 1),
     )  # fmt: skip
 

@@ -1,7 +1,5 @@
 """Real photographs of the suite photos; without others those of scikit-image are there."""
 
-import numpy as np
-
 from drystone_lab import photos
 from drystone_lab.photographs.real import ALL, pixels_of, there, truth_of
 from drystone_lab.photos import whole_stones
@@ -28,5 +26,5 @@ def test_stones_that_the_edge_cuts_do_not_count():
     image = pixels_of(coins, None)
     truth = truth_of(coins, None, (image.shape[1], image.shape[0]))
     assert truth.shape == image.shape[:2]
-    assert int(whole_stones(truth).max()) == 24
-    assert int(whole_stones(np.ascontiguousarray(truth[:, 20:])).max()) < 24
+    assert len(whole_stones(truth)) == 24
+    assert len(whole_stones(truth[:, 20:])) < 24
