@@ -22,6 +22,7 @@ from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LimitStatus
 from drystone_lab.statics_cases import HEIGHT, MU, WALLS, Rectangle, closed_forms
 from drystone_lab.table import BENCH, BenchSettings, Cell, Table, worded
+from drystone_lab.timed_walls import exponents
 
 Points = NDArray[np.float64]
 
@@ -195,15 +196,6 @@ def refinement_errors(
     return np.reshape(errors, (len(heights_px), 2, -1))
 
 
-def fitted_order(heights_px: Sequence[int], errors: Sequence[float]) -> float:
-    """Return p of error ~ height^-p by least squares of the logarithms.
-
-    >>> round(fitted_order((10, 20, 40), (0.4, 0.1, 0.025)), 9)
-    2.0
-    """
-    return float(-np.polyfit(np.log(heights_px), np.log(errors), 1)[0])
-
-
 def _alphas(model: RigidBlockModel) -> Points:
     """Return both load factors: 0 where blocks do not stand, nan where there is no number."""
     both = lateral_resistance(model)
@@ -224,12 +216,11 @@ def run(settings: BenchSettings) -> tuple[Table, ...]:
     for seed in range(settings.seed, settings.seed + count):
         errors = refinement_errors(heights, seed=seed, **few)
         means, worst = np.nanmean(errors, axis=2), np.nanmax(errors, axis=2)
+        # Of error ~ height^-p
+        orders = [None if p is None else -p for p in exponents(heights, means.tolist())]
         for height, mean, most in zip(heights, means.tolist(), worst.tolist(), strict=True):
-            last = height == heights[-1]
-            orders = [fitted_order(heights, each) if last else None for each in means.T]
-            rows.append(
-                (seed, height, errors.shape[2], mean[0], most[0], mean[1], most[1], *orders)
-            )
+            known = orders if height == heights[-1] else [None, None]
+            rows.append((seed, height, errors.shape[2], mean[0], most[0], mean[1], most[1], *known))
     return _published(quick=settings.quick), worded(BENCH["pixels"]["refinement"], rows)
 
 

@@ -4,7 +4,7 @@ import json
 import os
 import platform
 import time
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
 from importlib.metadata import version
@@ -160,12 +160,6 @@ class ReportFolder:
             del misses[name]
         self._write_misses(misses)
 
-    def write_report(self, order: Iterable[str]) -> Path:
-        """Write the page of everything that was made so far."""
-        names = list(order)
-        records = [record for name in names if (record := self.record(name)) is not None]
-        return write_page(self.path / PAGE, records, self.misses, names)
-
     def _write_misses(self, misses: Mapping[str, Mapping[str, str]]) -> None:
         text = json.dumps({"schema": MARK_SCHEMA, "misses": misses}, ensure_ascii=False, indent=1)
         write_whole(self.path / MARK, text.encode())
@@ -228,7 +222,8 @@ def reproduce(
     for name in names:
         progress.begin(name)
         made = _made(name, items[name], report, options, runner)
-        report.write_report(items)
+        records = [record for each in items if (record := report.record(each)) is not None]
+        write_page(folder / PAGE, records, report.misses, list(items))
         progress.line(made.status)
         yield made
 

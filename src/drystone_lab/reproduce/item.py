@@ -133,7 +133,12 @@ class PaperItem:
         elif checked:
             tables.append(("claims", Table("The paper's claims", CLAIMS, tuple(checked))))
             said = sentences(checked)
-        pictures = (one._replace(about=self._caption(one, found)) for one in self.pictures(found))
+        pictures = []
+        for one in self.pictures(found):
+            captions = self.words["captions"]
+            key = max((k for k in captions if one.name.startswith(k)), key=len)
+            about = captions[key].format(found if one.about is None else one.about)
+            pictures.append(one._replace(about=about))
         return Output(
             ours=(*self.words.get("notes", ()), *said),
             tables=tuple(tables),
@@ -141,12 +146,6 @@ class PaperItem:
             pictures=tuple(pictures),
             runs=tuple(dict.fromkeys(context.asked)),
         )
-
-    def _caption(self, picture: ItemFigure, found: Any) -> str:
-        captions = self.words["captions"]
-        key = max((k for k in captions if picture.name.startswith(k)), key=len)
-        text: str = captions[key].format(found if picture.about is None else picture.about)
-        return text
 
 
 CLAIMS = ("the paper", "here", "agrees")
