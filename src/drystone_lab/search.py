@@ -308,11 +308,6 @@ def searched(
     return {run: known[run] for task in tasks for run in task.runs}
 
 
-def searched_walls(settings: BenchSettings) -> tuple[Target, ...]:
-    """Return the walls of the suite: of published stones, and sets that are made for it alone."""
-    return chosen((BRICKS,) if settings.quick else (*SEARCHED, *UNSEEN), settings.only)
-
-
 def chosen_ways(names: Sequence[str]) -> tuple[str, ...]:
     """Return the names of all ways, or those that are named; E138 for a name that none has."""
     unknown = set(names) - {*WAYS}
@@ -359,9 +354,11 @@ def run(settings: BenchSettings) -> tuple[Table, ...]:
     seconds, count = (0.1, 2) if settings.quick else (20.0, 6)
     times = tuple(sorted(set(settings.seconds))) or (seconds,)
     seeds = range(settings.seed, settings.seed + (settings.seeds or count))
+    # Of published stones, and sets that are made for this suite alone.
+    every = (BRICKS,) if settings.quick else (*SEARCHED, *UNSEEN)
     walls = [
         (target, stones)
-        for target in searched_walls(settings)
+        for target in chosen(every, settings.only)
         if (stones := target.stones(settings.data)) is not None
     ]
     results = searched(walls, seeds, times, settings)
@@ -373,11 +370,15 @@ def run(settings: BenchSettings) -> tuple[Table, ...]:
         medians: list[tuple[Cell, ...]] = []
         differences: list[tuple[Cell, ...]] = []
         for target, stones in walls:
-            found = {}
-            for way in chosen_ways(settings.policies):
-                method = method_name(way, settings.changes)
-                runs = [SearchRun(target.name, method, seed, seconds) for seed in seeds]
-                found[way] = [results[run] for run in runs]
+            found = {
+                way: [
+                    results[
+                        SearchRun(target.name, method_name(way, settings.changes), seed, seconds)
+                    ]
+                    for seed in seeds
+                ]
+                for way in chosen_ways(settings.policies)
+            }
             medians += _rows(target.name, len(stones), found)
             differences += _differences(target.name, found)
         tables.append(worded(of["medians"], medians, more=notes, seconds=seconds, seeds=len(seeds)))

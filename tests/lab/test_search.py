@@ -20,7 +20,7 @@ from drystone_lab.runs.spec import generated
 from drystone_lab.search import SearchRun
 from drystone_lab.second_arrangement import finer_labels, second_arrangement
 from drystone_lab.table import BenchSettings
-from drystone_lab.walls import BRICKS, UNSEEN, Target, chosen
+from drystone_lab.walls import BRICKS, SEARCHED, UNSEEN, Target, chosen
 from tests.metrics.walls import bricks
 from tests.verify.exact_examples import exact_example
 
@@ -352,7 +352,7 @@ def test_unseen_sets_stay_the_same_and_suit_their_walls(target):
 
 
 def test_walls_are_chosen_by_the_beginnings_of_their_names_and_some_settings_refused():
-    found = search.searched_walls(BenchSettings(only=("R", "PR 6")))
+    found = chosen((*SEARCHED, *UNSEEN), ("R", "PR 6"))
     assert [target.name for target in found] == ["R framed", "PR 600x160"]
     with pytest.raises(UsageError, match="E138"):
         chosen(UNSEEN, ("rubble", "Q"))

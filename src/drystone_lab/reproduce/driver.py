@@ -32,16 +32,6 @@ PACKAGES = (
 """That results depend on, beside drystone itself."""
 
 
-def request_of(*, quick: bool, seed: int, data: Path | None) -> dict[str, Any]:
-    """Return what the contents of an item depend on, beside its name.
-
-    Published are the files that are there: some items leave out rows whose stones are not.
-    """
-    files = [file.name for each in SETS.values() for file in each.files]
-    there = [name for name in files if data is not None and (data / name).is_file()]
-    return {"version": version("drystone"), "quick": quick, "seed": seed, "published": there}
-
-
 def is_met(request: Mapping[str, Any], made: Mapping[str, Any]) -> bool:
     """Return whether what was made for one request is what another asks for.
 
@@ -233,7 +223,14 @@ def _made(
 ) -> MadeItem:
     """Return what becomes of an item: it is kept, made, or there is an error."""
     page = report.page(name)
-    request = request_of(quick=options.quick, seed=options.seed, data=options.data)
+    # What the contents depend on, beside the name.  Published are the files that are there: some
+    # items leave out rows whose stones are not.
+    data, files = options.data, [file.name for each in SETS.values() for file in each.files]
+    there = [each for each in files if data is not None and (data / each).is_file()]
+    request = {
+        "version": version("drystone"), "quick": options.quick, "seed": options.seed,
+        "published": there,
+    }  # fmt: skip
     kept = None if options.again else report.record(name)
     if kept is not None and is_met(request, kept["request"]):
         report.miss(name, item, None)

@@ -95,9 +95,8 @@ def released_rows(data: Path | None, ours: Mapping[str, TimedWall]) -> Rows:
             if times is None:
                 yield name, f"{who}: not in the data folder", *[None] * 7
                 continue
-            whole = sum(times[2].values())
-            shares_of = (float(times[2][what] / whole) for what in PROCEDURES)
-            yield three_digits((name, who, *times[:2], whole, *shares_of, times[3]))
+            whole, parts = sum(times[2].values()), shares(times[2])
+            yield three_digits((name, who, *times[:2], whole, *parts.values(), times[3]))
 
 
 def procedure_seconds(steps: Sequence[StepTime]) -> dict[str, float]:
@@ -108,9 +107,8 @@ def procedure_seconds(steps: Sequence[StepTime]) -> dict[str, float]:
     }
 
 
-def shares(steps: Sequence[StepTime]) -> dict[str, float]:
+def shares(seconds: Mapping[str, float]) -> dict[str, float]:
     """Return the share of each of the paper's procedures in the time of all three."""
-    seconds = procedure_seconds(steps)
     whole = sum(seconds.values()) or 1.0
     return {name: value / whole for name, value in seconds.items()}
 
@@ -124,7 +122,7 @@ def late_over_early(seconds: Sequence[float]) -> float:
 def step_findings(walls: BySampling) -> Iterator[Claimed]:
     """Compare measured steps with what §6.1 says of them."""
     variant, full = walls["variant"].steps, walls["full"].steps
-    each = {SAMPLINGS[name]: shares(wall.steps) for name, wall in walls.items()}
+    each = {SAMPLINGS[name]: shares(procedure_seconds(wall.steps)) for name, wall in walls.items()}
     told = "; ".join(
         f"{name}: " + ", ".join(f"{what} {100 * share:.0f} %" for what, share in one.items())
         for name, one in each.items()

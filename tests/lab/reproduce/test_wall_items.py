@@ -223,7 +223,7 @@ def test_steps_by_part():
         for n in range(1, 9)
     ]
     assert times.late_over_early([1.0, 1.0, 2.0, 2.0, 2.0, 2.0, 3.0, 3.0]) == 3.0
-    assert sum(times.shares(steps).values()) == pytest.approx(1.0)
+    assert sum(times.shares(times.procedure_seconds(steps)).values()) == pytest.approx(1.0)
     wall = TimedWall(Site(280, 80), 0.5, tuple(steps))
     found = times.step_findings({"variant": wall, "full": wall})
     assert [one.holds for one in found] == [True, True, True, True, False]
