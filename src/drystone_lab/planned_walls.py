@@ -8,7 +8,7 @@ import numpy as np
 
 from drystone.model.plan import Plan
 from drystone.model.stone import StoneSet
-from drystone.model.wall import Labels, Wall
+from drystone.model.wall import Wall
 from drystone.statics.flow.nonassociative import nonassociative_resistance
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.lp.extremes import Solver
@@ -35,11 +35,6 @@ class PlannedWall:
     def after(self) -> tuple[Wall, ...]:
         """The wall after each stone and its wedges."""
         return tuple(stage.after for stage in replay_plan(self.plan, self.stones).stages)
-
-    @property
-    def stages(self) -> tuple[Labels, ...]:
-        """Label images of these walls at the working scale."""
-        return tuple(wall.labels for wall in self.after)
 
     @cached_property
     def models(self) -> tuple[RigidBlockModel, ...]:

@@ -1,10 +1,8 @@
 """Walls and arches whose load factor is known from a formula, or from other people's programs."""
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from itertools import accumulate, pairwise
-from typing import Any
 
 import numpy as np
 
@@ -38,18 +36,13 @@ class ClosedForm:
     right: float
 
     @property
-    def data(self) -> Mapping[str, Any]:
-        """The case as a block model file."""
-        return {"blocks_xywh": self.rectangles, "mu": self.mu}
-
-    @property
     def model(self) -> RigidBlockModel:
         """The case as a model.
 
         >>> len(running_bond().model.blocks)
         10
         """
-        return model_from_json(self.data)
+        return model_from_json({"blocks_xywh": self.rectangles, "mu": self.mu})
 
 
 def single_block(width: float, height: float, mu: float) -> ClosedForm:

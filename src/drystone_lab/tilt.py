@@ -23,7 +23,7 @@ def run(settings: BenchSettings) -> tuple[Table, ...]:
 
 
 def _rows(wall: PlannedWall, settings: BenchSettings) -> list[tuple[Cell, ...]]:
-    outlines = outlines_of_labels(wall.stages[-1])
+    outlines = outlines_of_labels(wall.after[-1].labels)
     variations = usual_variations()
     compared = compare_with_tilt(
         EngineScene(outlines, wall.mu),

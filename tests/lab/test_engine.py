@@ -77,7 +77,8 @@ def test_what_counts_as_agreement(factors, motion, fell, agreement):
 def test_a_picture_is_tilted_and_predicted():
     """A stone of 20 x 40 px topples at .5, whatever the flow rule."""
     pytest.importorskip("pymunk", reason="pymunk is not installed (extra `physics`)")
-    wall = SimpleNamespace(name="stone", stages=(np.ones((40, 20), np.uint32),), mu=0.58)
+    after = SimpleNamespace(labels=np.ones((40, 20), np.uint32))
+    wall = SimpleNamespace(name="stone", after=(after,), mu=0.58)
     for row in tilt._rows(wall, BenchSettings(quick=True)):
         assert row[2:4] == pytest.approx((0.5, 0.5))
         low, high = (float(end) for end in row[4].split(" to "))

@@ -17,13 +17,13 @@ from tests.verify.examples import example
 @pytest.mark.parametrize("made", [example(), exact_example(0.5)], ids=["pixels", "outlines"])
 def test_models_are_those_of_the_plan_after_every_stone(made):
     wall = PlannedWall("by hand", made.plan, made.stones)
-    assert len(wall.models) == len(wall.stages) == len(made.plan.stone_steps)
+    assert len(wall.models) == len(wall.after) == len(made.plan.stone_steps)
     claims = [step for step in made.plan.steps if step.alpha_left is not None]
     for model, step in zip(wall.models, claims, strict=True):
         found = lateral_resistance(model)
         assert found.left.alpha == pytest.approx(step.alpha_left, abs=1e-7)
         assert found.right.alpha == pytest.approx(step.alpha_right, abs=1e-7)
-    np.testing.assert_array_equal(wall.stages[-1], made.wall.labels)
+    np.testing.assert_array_equal(wall.after[-1].labels, made.wall.labels)
     assert wall.mu == 0.58
 
 

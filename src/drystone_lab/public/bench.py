@@ -54,7 +54,7 @@ def run_public(suite: str, settings: BenchSettings, stamp: Stamp) -> tuple[Table
     The tables are walls, all walls, and seconds; then the differences of two methods or more, and
     their ranking.
     """
-    methods = [method_named(name, settings.changes) for name in settings.policies]
+    methods = {name: method_named(name, settings.changes) for name in settings.policies}
     asked = walls_of(suite, settings.only, quick=settings.quick)
     walls = [wall for wall in asked if wall.source.is_there(settings.data)]
     if not walls:
@@ -65,10 +65,10 @@ def run_public(suite: str, settings: BenchSettings, stamp: Stamp) -> tuple[Table
     count = settings.seeds or (2 if settings.quick else 5)
     # Methods take turns, so that all have the same day.
     tasks = [
-        (wall, method.name, method.run(wall, seed))
+        (wall, name, wall.run(seed, *changes, method=method))
         for wall in walls
         for seed in range(settings.seed, settings.seed + count)
-        for method in methods
+        for name, (method, changes) in methods.items()
     ]
     results = _done(tasks, settings, stamp)
     # The yardstick builds no walls to be compared.

@@ -8,12 +8,12 @@ from dataclasses import replace
 from importlib.metadata import entry_points
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any, NamedTuple
+from typing import Any
 
 from drystone.errors import UsageError
 from drystone.planner.settings import method_settings
 from drystone.selection.policies.registry import BUILT_IN, GROUP, PAPER, RULES, no_policy, rule_of
-from drystone_lab.runs.spec import STRIPS, Changes, RunSpec, Scalar, flat, nested
+from drystone_lab.runs.spec import STRIPS, Changes, Scalar, flat, nested
 from drystone_lab.walls import (
     IR_FRAMED,
     NOISY,
@@ -82,33 +82,21 @@ ABOUT = {
 """What each does; docs/for-researchers.md explains the policies."""
 
 
-class BenchMethod(NamedTuple):
-    """Somebody who builds walls."""
-
-    name: str
-    method: str
-    changes: Changes = ()  # Settings that replace the method's
-
-    def run(self, wall: Target, seed: int) -> RunSpec:
-        """Return the run that builds a wall."""
-        return wall.run(seed, *self.changes, method=self.method)
-
-
 def known_methods() -> dict[str, str]:
     """Return what each method does by name, those of other packages last."""
     others = {entry.name for entry in entry_points(group=GROUP)} - {*ABOUT, *RULES}
     return ABOUT | dict.fromkeys(sorted(others), "a policy of another package that is installed")
 
 
-def method_named(name: str, changes: Changes = ()) -> BenchMethod:
-    """Return a method.
+def method_named(name: str, changes: Changes = ()) -> tuple[str, Changes]:
+    """Return the method of runs, and the settings that replace its own.
 
-    >>> method_named("lowest", (("sampling", "full"),)).changes
-    (('selection_rule', 'lowest'), ('sampling', 'full'))
+    >>> method_named("lowest", (("sampling", "full"),))
+    ('paper', (('selection_rule', 'lowest'), ('sampling', 'full')))
     """
     if name == STRIPS:
         # No setting of a planner means anything to it.
-        return BenchMethod(STRIPS, STRIPS, (("seconds", STRIP_SECONDS),))
+        return STRIPS, (("seconds", STRIP_SECONDS),)
     if name == BEST:
         method, own = "best", dict[str, Scalar]({"search.budget": 1})
     else:
@@ -117,7 +105,7 @@ def method_named(name: str, changes: Changes = ()) -> BenchMethod:
         method, own = "paper", {} if name == PAPER else {"selection_rule": rule_of(name)}
     merged = tuple((own | dict(changes)).items())
     method_settings(method).updated(nested(merged))  # E123 for what there is not
-    return BenchMethod(name, method, merged)
+    return method, merged
 
 
 def flat_changes(settings: Mapping[str, Any], where: str) -> Changes:

@@ -120,8 +120,7 @@ def plot_standing(
     if standing.falls:
         _draw_turn(ax, standing)
     ax.set_xlabel("working px", fontsize=7, labelpad=1)
-    if title:
-        ax.set_title(title, fontsize=7, loc="left", pad=3)
+    ax.set_title(title, fontsize=7, loc="left", pad=3)
 
 
 def _draw_points(ax: Axes, standing: SupportedStone) -> None:

@@ -156,7 +156,6 @@ class Brick(NamedTuple):
 class BrickCourses(NamedTuple):
     """What the courses of a wall are like."""
 
-    bricks: int
     lying: int  # With their long side level
     in_course: int  # Lying, with their foot at a whole number of brick heights
     courses: int
@@ -180,7 +179,7 @@ def courses_of(bricks: Sequence[Brick], height_px: int, width_px: int) -> BrickC
 
     >>> low = [Brick(0, 20, 0, 10, True), Brick(20, 40, 0, 10, True)]
     >>> courses_of([*low, Brick(10, 30, 10, 20, True), Brick(30, 50, 10, 20, True)], 10, 20)
-    BrickCourses(bricks=4, lying=4, in_course=4, courses=2, joints=2, crossed=2)
+    BrickCourses(lying=4, in_course=4, courses=2, joints=2, crossed=2)
     """
     lying = [b for b in bricks if b.full and b.right - b.left == width_px]
     level = [b for b in lying if b.bottom % height_px == 0]
@@ -197,7 +196,7 @@ def courses_of(bricks: Sequence[Brick], height_px: int, width_px: int) -> BrickC
                 all(abs(place - other) >= OVERLAP * width_px for other in beside)
                 for place in places
             )
-    return BrickCourses(len(bricks), len(lying), len(level), len(joints), count, crossed)
+    return BrickCourses(len(lying), len(level), len(joints), count, crossed)
 
 
 def head_joints(course: Sequence[Brick]) -> list[float]:

@@ -29,16 +29,6 @@ Process = Any
 """An executor of loky, which tells nothing of its types, with one process."""
 
 
-@contextmanager
-def processes_at_work(jobs: int) -> Iterator[RunWorker]:
-    """Start processes that do runs."""
-    if jobs == 1:
-        yield one_by_one
-        return
-    with Crew(jobs) as crew:
-        yield lambda specs, data: crew.work(partial(execute, data=data), specs)
-
-
 class Crew:
     """Processes with one worker each, so that it is known at which task one died.
 
@@ -135,6 +125,11 @@ def work_of(jobs: int | None, dask_address: str | None) -> Iterator[RunWorker]:
         what = "processes here and a Dask cluster are asked for, and only one of them can work."
         cure = "Give one of the two; a cluster's workers are its own."
         raise UsageError("E138", what, where="--jobs, --dask", cure=cure)
-    here = dask_address is None
-    with processes_at_work(jobs or 1) if here else cluster_at_work(str(dask_address)) as work:
-        yield work
+    if dask_address is not None:
+        with cluster_at_work(dask_address) as work:
+            yield work
+    elif jobs in (None, 1):
+        yield one_by_one
+    else:
+        with Crew(jobs) as crew:
+            yield lambda specs, data: crew.work(partial(execute, data=data), specs)

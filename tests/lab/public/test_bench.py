@@ -140,7 +140,8 @@ def packing_into(monkeypatch, width):
 @pytest.mark.parametrize(("strip", "over"), [(300.0, 300.0), (60.0, 120.0)])
 def test_it_fills_a_strip_as_high_as_the_wall(monkeypatch, strip, over):
     asked = packing_into(monkeypatch, strip)
-    outcome = execute(method_named("spyrrow").run(WALL, 3), None)
+    method, changes = method_named("spyrrow")
+    outcome = execute(WALL.run(3, *changes, method=method), None)
     stones = WALL.source.stones(None)
     assert asked == [(len(stones), 84, (0.0, 90.0, 180.0, 270.0), 3, 3)]
     # A strip that is shorter than the wall leaves the rest of the wall empty.

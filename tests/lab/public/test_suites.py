@@ -68,17 +68,22 @@ def test_all_walls_and_some_alone():
 WALL = walls_of("bricks")[0]
 
 
+def settings_of(name, changes=()):
+    method, merged = method_named(name, changes)
+    return WALL.run(3, *merged, method=method).settings()
+
+
 def test_only_the_choice_differs_and_settings_are_replaced_for_all_alike():
-    paper = method_named("paper").run(WALL, 3).settings()
+    paper = settings_of("paper")
     for name in ("random", "lowest", "scalarised", "filter", "towers"):
-        own = method_named(name).run(WALL, 3).settings()
+        own = settings_of(name)
         assert own.selection_rule == name
         assert own.updated({"selection_rule": "algorithm2"}) == paper
-    best = method_named("best").run(WALL, 3).settings()
+    best = settings_of("best")
     assert (best.geometry, best.search.budget, best.selection_rule) == ("exact", 1, "score")
     changes = flat_changes({"sampling": "full", "placement": {"beta": 0.5}}, "x.toml")
     for name in ("paper", "random", "best"):
-        settings = method_named(name, changes).run(WALL, 0).settings()
+        settings = settings_of(name, changes)
         assert (settings.sampling, settings.placement.beta) == ("full", 0.5)
 
 

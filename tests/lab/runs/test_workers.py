@@ -9,17 +9,17 @@ import pytest
 from drystone.errors import DrystoneError, UsageError
 from drystone_lab.runs import workers
 from drystone_lab.runs.outcome import Runner, RunStore, one_by_one
-from drystone_lab.runs.workers import ONE_THREAD, Crew, processes_at_work, work_of
+from drystone_lab.runs.workers import ONE_THREAD, Crew, work_of
 from tests.lab.runs.bricks import NOT_SIX, deadly, endless, kept, run
 
 
 def test_options_name_who_works(monkeypatch):
-    for who, asked in (("processes", (3, None)), ("cluster", (None, "tcp://a:1"))):
-        monkeypatch.setattr(
-            workers, f"{who}_at_work", lambda number, who=who: nullcontext((who, number))
-        )
-        with work_of(*asked) as work:
-            assert work == (who, asked[0] or asked[1])
+    monkeypatch.setattr(workers, "cluster_at_work", nullcontext)
+    with work_of(None, "tcp://a:1") as work:
+        assert work == "tcp://a:1"
+    for jobs in (None, 1):
+        with work_of(jobs, None) as work:
+            assert work is one_by_one
     with pytest.raises(UsageError, match="E138"), work_of(1, "tcp://a:1"):
         pass
 
@@ -46,7 +46,7 @@ def interrupt_soon(_):
 @pytest.mark.usefixtures("interruptible")
 def test_deaths_and_interrupts_lose_nothing_that_ended(tmp_path):
     store = RunStore(tmp_path)
-    with processes_at_work(2) as work:
+    with work_of(2, None) as work:
         runner = Runner(store, work=work)
         with pytest.raises(DrystoneError, match=f"^E402 {deadly(2)}: "):
             runner.run([run(1), deadly(2)])
@@ -63,7 +63,7 @@ def test_a_run_that_fails_does_not_stop_those_that_have_begun(tmp_path, monkeypa
     monkeypatch.setattr(workers, "_process", AtOnce)
     specs = [run(1), run(2, NOT_SIX), run(3), run(4), run(5)]
     store = RunStore(tmp_path)
-    with processes_at_work(3) as work, pytest.raises(DrystoneError, match="E130"):
+    with work_of(3, None) as work, pytest.raises(DrystoneError, match="E130"):
         Runner(store, work=work).run(specs)
     assert [kept(store, run(seed)) for seed in (1, 3, 5)] == [True, True, False]
 
