@@ -12,6 +12,7 @@ from matplotlib.patheffects import withStroke
 from drystone.drawing.canvas import draw_block, fit_axes
 from drystone.drawing.outlines import Loop, label_regions
 from drystone.drawing.palette import GREY, OUTLINE_COLOUR, WEDGE_COLOUR
+from drystone.kernels.raster import Mask
 from drystone.model.placement import Wedge
 from drystone.model.wall import Labels
 from drystone.stabilise.stabilise import (
@@ -23,7 +24,7 @@ from drystone.stabilise.stabilise import (
     rotate_to_rest,
     support_polyline,
 )
-from drystone_lab.reproduce.construction import Construction, Moment, construction
+from drystone_lab.reproduce.construction import Moment, construction
 from drystone_lab.reproduce.item import Context, ItemFigure, PaperItem, Rows
 from drystone_lab.walls import PR, Target
 
@@ -70,12 +71,16 @@ class SupportedStone:
         return (x_b - x_a) * (y_c - y_a) - (y_b - y_a) * (x_c - x_a)
 
     @property
-    def loops(self) -> tuple[Loop, ...]:
+    def loops(self) -> list[Loop]:
         """Boundary of the stone."""
         posed, row, col = self.pose
-        (region,) = label_regions(posed.mask.astype(np.uint32))
-        low = self.height_px - row - posed.height_px
-        return tuple(loop + np.array([col, low]) for loop in region.loops)
+        return _loops(posed.mask, row, col, self.height_px)
+
+
+def _loops(mask: Mask, row: int, col: int, height_px: int) -> list[Loop]:
+    """Return the boundary of a mask at a place of a landscape."""
+    (region,) = label_regions(mask.astype(np.uint32))
+    return [loop + np.array([col, height_px - row - len(mask)]) for loop in region.loops]
 
 
 def plot_standing(
@@ -110,10 +115,9 @@ def plot_standing(
     if before is not None and not standing.wedges:
         draw_block(ax, before.loops, "before", edgecolor=GHOST, linestyle=(0, (3, 2)), zorder=3)
     for wedge in standing.wedges:
-        (region,) = label_regions(wedge.mask.astype(np.uint32))
         tall, wide = wedge.mask.shape
         low = standing.height_px - wedge.row - tall
-        loops = [loop + np.array([wedge.col, low]) for loop in region.loops]
+        loops = _loops(wedge.mask, wedge.row, wedge.col, standing.height_px)
         draw_block(ax, loops, f"wedge-{wedge.id}", fill=WEDGE_COLOUR, zorder=4)
         _write(ax, f"h {tall}, w {wide}", (wedge.col + wide / 2, float(low)), (0.0, -8.0))
     _draw_points(ax, standing)
@@ -191,24 +195,6 @@ class Unstable:
         return (self.trial.cross < 0) == (self.trial.falls > 0)
 
 
-def unstable_trials(built: Construction) -> tuple[int, tuple[Unstable, ...]]:
-    """Try every stone that is left before each step of a run.
-
-    Returns how many were tried and had a position, and those that fall.
-    """
-    count, found = 0, []
-    for moment in built.moments:
-        for stone_id in moment.remaining:
-            trial = moment.trial(stone_id)
-            if trial is None:
-                continue
-            count += 1
-            standing = _standing(moment, trial)
-            if standing is not None and standing.falls:
-                found.append(_treated(moment, standing))
-    return count, tuple(found)
-
-
 def _treated(moment: Moment, trial: SupportedStone) -> Unstable:
     """Turn a stone that falls, and wedge it instead."""
     occupied, workshop = moment.wall.occupied, moment.workshop
@@ -245,7 +231,7 @@ class Falls:
     """What was tried before each step of a run, what falls there, and the cases that are drawn."""
 
     wall: Target
-    trials: int
+    trials: int  # Those that had a position
     unstable: tuple[Unstable, ...]
 
     @property
@@ -260,7 +246,17 @@ class Falls:
 
 def falls(context: Context, wall: Target = PR) -> Falls:
     """Try all stones that are left before each step of a run, and treat those that fall."""
-    return Falls(wall, *unstable_trials(construction(context, wall)))
+    count, found = 0, []
+    for moment in construction(context, wall).moments:
+        for stone_id in moment.remaining:
+            trial = moment.trial(stone_id)
+            if trial is None:
+                continue
+            count += 1
+            standing = _standing(moment, trial)
+            if standing is not None and standing.falls:
+                found.append(_treated(moment, standing))
+    return Falls(wall, count, tuple(found))
 
 
 def _largest(cases: Sequence[Unstable], size: Callable[[Unstable], float]) -> Unstable | None:

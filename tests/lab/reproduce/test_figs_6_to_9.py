@@ -227,8 +227,8 @@ def test_positions_and_their_values_are_drawn_at_the_centroids():
 
 
 @pytest.fixture(scope="module")
-def unstable(folder):
-    return fig9.unstable_trials(built(folder, SHARP))
+def unstable(here):
+    return fig9.falls(here, SHARP)
 
 
 def falls(occupied, pose):
@@ -245,8 +245,8 @@ def test_every_stone_that_is_left_is_tried_and_those_that_fall_are_found(folder,
         for stone_id in moment.remaining
         if (trial := moment.trial(stone_id)) is not None
     ]
-    assert unstable[0] == len(tried)
-    assert [(one.moment.number, one.stone_id) for one in unstable[1]] == [
+    assert unstable.trials == len(tried)
+    assert [(one.moment.number, one.stone_id) for one in unstable.unstable] == [
         (moment.number, stone_id)
         for moment, stone_id, trial in tried
         if falls(moment.wall.occupied, trial)
@@ -254,7 +254,7 @@ def test_every_stone_that_is_left_is_tried_and_those_that_fall_are_found(folder,
 
 
 def test_turned_and_wedged_stones_rest(unstable):
-    for case in unstable[1]:
+    for case in unstable.unstable:
         occupied = case.moment.wall.occupied
         if case.turned is not None:
             assert not falls(occupied, case.turned.pose)
@@ -270,12 +270,12 @@ def test_turned_and_wedged_stones_rest(unstable):
             assert not falls(scene, case.wedged.pose)
             assert case.wedged.pose == case.trial.pose
     for way in ("turned", "wedged"):
-        assert sum(getattr(case, way) is not None for case in unstable[1]) > 5
+        assert sum(getattr(case, way) is not None for case in unstable.unstable) > 5
 
 
 def test_counts_add_up_and_the_most_turned_and_the_largest_wedge_are_drawn(outputs, unstable):
     count = {row["what"]: row["count"] for row in rows(outputs["fig9"], "counts")}
-    trials, cases = unstable
+    trials, cases = unstable.trials, unstable.unstable
     assert (count["tried"], count["not stable"]) == (trials, len(cases))
     ends = ("stable after turning", "turning fails, a wedge does", "neither")
     assert sum(count[end] for end in ends) == len(cases)
@@ -283,7 +283,7 @@ def test_counts_add_up_and_the_most_turned_and_the_largest_wedge_are_drawn(outpu
     table = rows(outputs["fig9"], "cases")
     assert [row["pose"] for row in table] == ["tried", "turned", "wedged", "tried", "wedged"]
     wide = [
-        case for case in unstable[1]
+        case for case in cases
         if case.turned is not None and case.wedged is not None
         and case.trial.support.right_x - case.trial.support.left_x
         >= fig9.WIDE * case.trial.pose[0].width_px
