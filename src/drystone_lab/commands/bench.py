@@ -1,10 +1,8 @@
 """`drystone bench`: how good the numbers are, and how good methods are."""
 
 import argparse
-import platform
 from collections.abc import Sequence
 from datetime import UTC, datetime
-from importlib.metadata import version
 from itertools import groupby
 from operator import itemgetter
 from pathlib import Path
@@ -101,11 +99,8 @@ def _tables(arguments: argparse.Namespace, suite: str) -> Sequence[Table]:
         with busy(suite, quiet=arguments.json, after_s=2.0):
             return run_suite(suite, settings)
     from drystone_lab.public.bench import run_public  # noqa: PLC0415 - see above
-    from drystone_lab.public.store import Stamp  # noqa: PLC0415
 
-    now = datetime.now(UTC).isoformat(timespec="seconds")
-    stamp = Stamp(version("drystone"), now, f"{platform.system()} {platform.machine()}")
-    return run_public(suite, settings, stamp)
+    return run_public(suite, settings, datetime.now(UTC).isoformat(timespec="seconds"))
 
 
 def _refuse(arguments: argparse.Namespace, who: str) -> None:

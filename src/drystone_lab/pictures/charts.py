@@ -1,9 +1,8 @@
 """Charts of studies: many walls, times of a planner at work, forces that were measured."""
 
-from collections import Counter
 from collections.abc import Mapping, Sequence
 from statistics import median
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -151,89 +150,6 @@ def _shifts(values: Sequence[float]) -> list[float]:
     for rank, place in enumerate(sorted(range(len(values)), key=values.__getitem__)):
         shifts[place] = SPREAD * columns[rank % len(columns)]
     return shifts
-
-
-_POINTS: dict[str, Any] = {
-    "linestyle": "", "markersize": 4, "alpha": 0.8, "markeredgecolor": OUTLINE_COLOUR,
-    "markeredgewidth": 0.3,
-}  # fmt: skip
-NOISE_LOOKS: tuple[dict[str, Any], ...] = (
-    {**_POINTS, "marker": "o", "color": CLUSTER_COLOURS[0]},
-    {**_POINTS, "marker": "^", "color": CLUSTER_COLOURS[1]},
-    {
-        "linestyle": (0, (5, 3)), "linewidth": 1.3, "marker": "s", "markersize": 3.5,
-        "color": CLUSTER_COLOURS[12], "zorder": 3,
-    },
-    {
-        "linestyle": "dotted", "linewidth": 1.2, "marker": "x", "markersize": 4,
-        "color": OUTLINE_COLOUR, "zorder": 3,
-    },
-)  # fmt: skip
-"""Walls above and below the threshold of filling, as blue points and yellow triangles; lines of
-references and of a baseline."""
-
-SHIFTS = (0.0, 1.4, -1.4, 2.8, -2.8)
-"""Walls of one level in turn, so that they do not hide each other; % of noise."""
-
-NoiseSeries = Sequence[Sequence[tuple[int, float]]]
-"""Noise in % and value of what each of :data:`NOISE_LOOKS` shows."""
-
-
-def noise_panels(
-    panels: Mapping[str, NoiseSeries], names: Sequence[str], ticks: Mapping[int, str]
-) -> Figure:
-    """Draw several figures of the same walls over the noise, with one legend above.
-
-    Panels are by what is written at the axis; the legend has a name a series.
-    """
-    sheet, axes = panel_sheet(len(panels), 2, (3.9, 2.8))
-    for ax, (figure, series) in zip(axes, panels.items(), strict=True):
-        for name, pairs, look in zip(names, series, NOISE_LOOKS, strict=True):
-            seen: Counter[int] = Counter()
-            x = []
-            for noise, _ in pairs:
-                x.append(noise + SHIFTS[seen[noise] % len(SHIFTS)])
-                seen[noise] += 1
-            ax.plot(x, [value for _, value in pairs], label=name, gid=name, **look)
-        name_axes(ax, "noise, %", figure)
-        ax.grid(axis="y", color=GREY, linewidth=0.3, alpha=0.5)
-        ax.set_xticks(list(ticks), list(ticks.values()))
-    handles, labels = axes[0].get_legend_handles_labels()
-    sheet.legend(handles, labels, fontsize=7, frameon=False, loc="outside upper center", ncols=4)
-    return sheet
-
-
-VersionLines = Mapping[str, Sequence[float | None]]
-"""By method: a value a version, None where there is none."""
-
-
-def history_panels(
-    versions: Sequence[str], figures: Mapping[str, VersionLines], title: str
-) -> Figure:
-    """Draw several figures over versions, a line a method, with one legend.
-
-    Lines are dashed where colours come round again.
-    """
-    sheet, panels = panel_sheet(len(figures), 3, (3.4, 2.4), title)
-    for ax, (figure, lines) in zip(panels, figures.items(), strict=True):
-        for number, (method, values) in enumerate(lines.items()):
-            turn, place = divmod(number, len(LOOKS))
-            colour, marker = LOOKS[place]
-            points = [(x, value) for x, value in enumerate(values) if value is not None]
-            ax.plot(
-                [x for x, _ in points], [value for _, value in points], color=colour,
-                marker=marker, markersize=4.5, linewidth=1, linestyle="--" if turn else "-",
-                label=method,
-            )  # fmt: skip
-        ax.set_xticks(range(len(versions)), versions)
-        ax.set_xlim(-0.4, len(versions) - 0.6)
-        name_axes(ax, "version", figure)
-    handles, labels = panels[0].get_legend_handles_labels()
-    sheet.legend(
-        handles, labels, fontsize=7, edgecolor="none", loc="outside lower center",
-        ncols=min(len(labels), 8),
-    )  # fmt: skip
-    return sheet
 
 
 PART_COLOURS: Mapping[Part, str] = {

@@ -14,7 +14,7 @@ from drystone.physics.scene import EngineScene
 from drystone.physics.shake import shake_once
 from drystone.physics.table import load_engine
 from drystone_lab.packing import load_packer
-from drystone_lab.public.store import CSV, NOT_SHAKEN, KeptRun, Stamp, keep, kept_runs
+from drystone_lab.public.store import CSV, NOT_SHAKEN, KeptRun, keep, kept_runs
 from drystone_lab.public.suites import STRIP_SECONDS, method_named, walls_of
 from drystone_lab.public.tables import BenchResults, comparison, pair_tables
 from drystone_lab.runs.outcome import Runner, RunOutcome, RunStore, absent_data
@@ -48,7 +48,7 @@ YARDSTICK = (
 BenchRun = tuple[RunSpec, RunOutcome, KeptRun]
 
 
-def run_public(suite: str, settings: BenchSettings, stamp: Stamp) -> tuple[Table, ...]:
+def run_public(suite: str, settings: BenchSettings, made_at: str) -> tuple[Table, ...]:
     """Run a suite and compare its methods.
 
     The tables are walls, all walls, and seconds; then the differences of two methods or more, and
@@ -70,7 +70,7 @@ def run_public(suite: str, settings: BenchSettings, stamp: Stamp) -> tuple[Table
         for seed in range(settings.seed, settings.seed + count)
         for name, (method, changes) in methods.items()
     ]
-    results = _done(tasks, settings, stamp)
+    results = _done(tasks, settings, made_at)
     # The yardstick builds no walls to be compared.
     planned = BenchResults(tuple(result for result in results.all if result.method != STRIPS))
     first, *others = (*comparison(results), *pair_tables(planned))
@@ -84,7 +84,7 @@ def run_public(suite: str, settings: BenchSettings, stamp: Stamp) -> tuple[Table
 
 
 def _done(
-    tasks: Sequence[tuple[Target, str, RunSpec]], settings: BenchSettings, stamp: Stamp
+    tasks: Sequence[tuple[Target, str, RunSpec]], settings: BenchSettings, made_at: str
 ) -> BenchResults:
     """Do the runs, keep them, and shake the walls if that is asked for."""
     if settings.shake:
@@ -101,7 +101,7 @@ def _done(
         runner = Runner(plans, settings.data, work, settings.say, again=settings.again)
         outcomes = runner.run([spec for *_, spec in tasks])
     runs = [
-        (spec, outcome, KeptRun.of(wall, method, spec.seed, outcome, settings.changes, stamp))
+        (spec, outcome, KeptRun.of(wall, method, spec.seed, outcome, settings.changes, made_at))
         for (wall, method, spec), outcome in zip(tasks, outcomes, strict=True)
     ]
     if store is not None:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from matplotlib.figure import Figure
 
 from drystone_lab.paired import median_of
-from drystone_lab.pictures.charts import history_panels
+from drystone_lab.pictures.charts import LOOKS, name_axes, panel_sheet
 from drystone_lab.public.store import PLACED, SHAKE, KeptRun
 from drystone_lab.table import BENCH, Cell, Table, worded
 
@@ -66,20 +66,36 @@ def history_table(medians: Sequence[Medians]) -> Table:
 
 
 def drawn_history(medians: Sequence[Medians]) -> Figure:
-    """Draw the medians of one suite over versions, a panel a figure that any method has."""
+    """Draw the medians of one suite over versions: a panel a figure that any method has.
+
+    A line a method, with one legend; lines are dashed where colours come round again.
+    """
     versions = sorted({one.version for one in medians}, key=version_order)
     methods = dict.fromkeys(one.method for one in medians)
     values = {(one.method, one.version): one.values for one in medians}
-    known = {
-        figure: {
-            method: [values.get((method, version), {}).get(figure) for version in versions]
-            for method in methods
-        }
-        for figure in FIGURES
-        if any(one.values[figure] is not None for one in medians)
-    }
+    known = [name for name in FIGURES if any(one.values[name] is not None for one in medians)]
     title = f"suite {medians[0].suite}: medians over walls and seeds (F_AH: lower is better)"
-    return history_panels(versions, known, title)
+    sheet, panels = panel_sheet(len(known), 3, (3.4, 2.4), title)
+    for ax, figure in zip(panels, known, strict=True):
+        for number, method in enumerate(methods):
+            turn, place = divmod(number, len(LOOKS))
+            colour, marker = LOOKS[place]
+            found = [values.get((method, version), {}).get(figure) for version in versions]
+            points = [(x, value) for x, value in enumerate(found) if value is not None]
+            ax.plot(
+                [x for x, _ in points], [value for _, value in points], color=colour,
+                marker=marker, markersize=4.5, linewidth=1, linestyle="--" if turn else "-",
+                label=method,
+            )  # fmt: skip
+        ax.set_xticks(range(len(versions)), versions)
+        ax.set_xlim(-0.4, len(versions) - 0.6)
+        name_axes(ax, "version", figure)
+    handles, labels = panels[0].get_legend_handles_labels()
+    sheet.legend(
+        handles, labels, fontsize=7, edgecolor="none", loc="outside lower center",
+        ncols=min(len(labels), 8),
+    )  # fmt: skip
+    return sheet
 
 
 def version_order(version: str) -> tuple[tuple[int, int, str], ...]:

@@ -1,8 +1,10 @@
 """Runs of the public benchmark, one type for a run, and the table that keeps them by version."""
 
 import json
+import platform
 from collections.abc import Iterable
 from dataclasses import astuple, dataclass, fields
+from importlib.metadata import version
 from operator import attrgetter
 from pathlib import Path
 from typing import Any
@@ -22,15 +24,6 @@ NOT_SHAKEN = "no"
 
 PLACED, SHAKE = "placed", "PGA"
 """Figures that are no column: the share of the stones that is placed, and the amplitude, g."""
-
-
-@dataclass(frozen=True)
-class Stamp:
-    """What runs that are kept together have in common."""
-
-    version: str
-    made_at: str
-    platform: str
 
 
 @dataclass(frozen=True)
@@ -66,7 +59,7 @@ class KeptRun:
     @classmethod
     def of(
         cls, wall: Target, method: str, seed: int, outcome: RunOutcome,
-        changes: Changes, stamp: Stamp,
+        changes: Changes, made_at: str,
     ) -> "KeptRun":  # fmt: skip
         """Return the row of a run; `changes` replaced settings for all methods alike."""
         figures = outcome.figures
@@ -74,10 +67,10 @@ class KeptRun:
         return cls(
             run_key=outcome.key, suite=wall.suite, suite_version=SUITE_VERSION, wall=wall.name,
             method=method, settings=json.dumps(dict(changes), sort_keys=True), seed=seed,
-            version=stamp.version, placed=int(figures["placed"] or 0),
+            version=version("drystone"), placed=int(figures["placed"] or 0),
             stones=int(figures["stones"] or 0), **{name: figures[name] for name in names},
-            seconds=outcome.times["wall"], pga_g=None, shaken=NOT_SHAKEN, made_at=stamp.made_at,
-            platform=stamp.platform,
+            seconds=outcome.times["wall"], pga_g=None, shaken=NOT_SHAKEN, made_at=made_at,
+            platform=f"{platform.system()} {platform.machine()}",
         )  # fmt: skip
 
     def figure(self, name: str) -> float | None:

@@ -1,14 +1,16 @@
 """Figs. 22 to 24: polygons of eight noise levels; Fig. 25: orientations in steps (§5.3)."""
 
-from collections.abc import Iterator, Sequence
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import cycle
 from pathlib import Path
 from statistics import median
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from scipy.stats import binomtest
 
 from drystone.contacts.gaps import model_with_closed_gaps
+from drystone.drawing.palette import CLUSTER_COLOURS, GREY, OUTLINE_COLOUR
 from drystone.metrics.frame import reduce_labels
 from drystone.metrics.measure import WallMetrics, measure_labels
 from drystone.model.wall import Labels
@@ -16,7 +18,7 @@ from drystone.statics.limit import lateral_resistance
 from drystone_lab.pictures import charts
 from drystone_lab.pictures.walls import plot_walls
 from drystone_lab.reproduce import study
-from drystone_lab.reproduce.cells import LEVEL, figures_of, rounded, trend
+from drystone_lab.reproduce.cells import LEVEL, METRICS, figures_of, rounded, trend
 from drystone_lab.reproduce.item import Claimed, ItemFigure, PaperItem, Rows
 from drystone_lab.reproduce.study import Study, StudyWalls, Trials, each_wall, medians, of_each
 from drystone_lab.runs.outcome import RunOutcome
@@ -211,12 +213,7 @@ def _noise_pictures(levels: NoiseLevels) -> Iterator[ItemFigure]:
         walls.append(level.built.drawn(level.ours, f"{title}, seed {seed}", place))
     yield ItemFigure("fig22", plot_walls(walls, 2))
     yield _scatter(levels)
-    names = (f"F_SF > {FILLED:g}", f"F_SF <= {FILLED:g}", "published walls",
-             "random choice, median")  # fmt: skip
-    ticks = {one.noise: f"{one.noise}{'*' * one.ours.wall.stand_in}" for one in levels}
-    axes = {"F_SF": "F_SF", "F_LR": "F_LR", "F_AV": "F_AV, %", "F_AH": "F_AH, %"}
-    panels = {words: _panel(levels, name) for name, words in axes.items()}
-    yield ItemFigure("fig24", charts.noise_panels(panels, names, ticks))
+    yield _over_noise(levels)
 
 
 def _scatter(levels: NoiseLevels) -> ItemFigure:
@@ -241,7 +238,53 @@ def _scatter(levels: NoiseLevels) -> ItemFigure:
     return ItemFigure("fig23", ax.figure)
 
 
-def _panel(levels: NoiseLevels, name: str) -> charts.NoiseSeries:
+_POINTS: dict[str, Any] = {
+    "linestyle": "", "markersize": 4, "alpha": 0.8, "markeredgecolor": OUTLINE_COLOUR,
+    "markeredgewidth": 0.3,
+}  # fmt: skip
+SERIES: Mapping[str, dict[str, Any]] = {
+    f"F_SF > {FILLED:g}": {**_POINTS, "marker": "o", "color": CLUSTER_COLOURS[0]},
+    f"F_SF <= {FILLED:g}": {**_POINTS, "marker": "^", "color": CLUSTER_COLOURS[1]},
+    "published walls": {
+        "linestyle": (0, (5, 3)), "linewidth": 1.3, "marker": "s", "markersize": 3.5,
+        "color": CLUSTER_COLOURS[12], "zorder": 3,
+    },
+    "random choice, median": {
+        "linestyle": "dotted", "linewidth": 1.2, "marker": "x", "markersize": 4,
+        "color": OUTLINE_COLOUR, "zorder": 3,
+    },
+}  # fmt: skip
+"""Walls above and below the threshold of filling, as blue points and yellow triangles; lines of
+references and of a baseline."""
+
+SHIFTS = (0.0, 1.4, -1.4, 2.8, -2.8)
+"""Walls of one level in turn, so that they do not hide each other; % of noise."""
+
+
+def _over_noise(levels: NoiseLevels) -> ItemFigure:
+    """Draw the four figures over the noise, with one legend above."""
+    sheet, axes = charts.panel_sheet(len(METRICS), 2, (3.9, 2.8))
+    for ax, name in zip(axes, ("F_SF", "F_LR", "F_AV", "F_AH"), strict=True):
+        for (words, look), pairs in zip(SERIES.items(), _series(levels, name), strict=True):
+            seen: Counter[int] = Counter()
+            x, y = [], []
+            for noise, value in pairs:
+                if value is not None:
+                    x.append(noise + SHIFTS[seen[noise] % len(SHIFTS)])
+                    y.append(value)
+                    seen[noise] += 1
+            ax.plot(x, y, label=words, gid=words, **look)
+        charts.name_axes(ax, "noise, %", name if name in {"F_SF", "F_LR"} else f"{name}, %")
+        ax.grid(axis="y", color=GREY, linewidth=0.3, alpha=0.5)
+        ticks = [f"{one.noise}{'*' * one.ours.wall.stand_in}" for one in levels]
+        ax.set_xticks([level.noise for level in levels], ticks)
+    handles, labels = axes[0].get_legend_handles_labels()
+    sheet.legend(handles, labels, fontsize=7, frameon=False, loc="outside upper center", ncols=4)
+    return ItemFigure("fig24", sheet)
+
+
+def _series(levels: NoiseLevels, name: str) -> list[list[tuple[int, float | None]]]:
+    """Return noise and value of what each of :data:`SERIES` shows."""
     full, poor = (
         [
             (level.noise, outcome.figures[name])
@@ -253,10 +296,7 @@ def _panel(levels: NoiseLevels, name: str) -> charts.NoiseSeries:
     )
     published = [(level.noise, getattr(wall.metrics, name)) for level, wall in published_of(levels)]
     random = [(level.noise, level.built.of("random")[0].median(name)) for level in levels]
-    return [
-        [(noise, value) for noise, value in series if value is not None]
-        for series in (full, poor, published, random)
-    ]
+    return [full, poor, published, random]
 
 
 NOISE = PaperItem(

@@ -1,4 +1,4 @@
-"""Charts of many walls, of times, of predictions, by version; and walls on one sheet."""
+"""Charts of many walls, of times, of predictions; and walls on one sheet."""
 
 from statistics import median
 
@@ -111,13 +111,6 @@ def test_points_bands_looks_and_legend():
     np.testing.assert_array_equal(*_line(ax, "equal").get_xydata().T)
     words = [text.get_text() for text in ax.get_legend().get_texts()]
     assert words == ["turns", "level", "granite", "sandstone", "friction", "equal", "20 % off"]
-
-
-def test_versions_without_a_value_have_no_point():
-    (ax,) = charts.history_panels(["1", "2", "3"], {"F_SF": {"paper": [0.5, None, 0.7]}}, "").axes
-    assert ax.lines[0].get_xydata().tolist() == [[0, 0.5], [2, 0.7]]
-    assert [tick.get_text() for tick in ax.get_xticklabels()] == ["1", "2", "3"]
-    assert (ax.get_xlabel(), ax.get_ylabel()) == ("version", "F_SF")
 
 
 def _panel(title, aspect):

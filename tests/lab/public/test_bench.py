@@ -1,6 +1,7 @@
 """Runs of the public benchmark on bricks, and its yardstick: strips packed without gravity."""
 
 from dataclasses import replace
+from importlib.metadata import version
 
 import pytest
 
@@ -8,19 +9,18 @@ from drystone.errors import InputError, UsageError
 from drystone_lab import packing
 from drystone_lab.public import bench
 from drystone_lab.public.history import history_table, medians_of
-from drystone_lab.public.store import Stamp, kept_runs
+from drystone_lab.public.store import kept_runs
 from drystone_lab.public.suites import method_named, walls_of
 from drystone_lab.runs import workers
 from drystone_lab.runs.outcome import FIGURES, execute, one_by_one
 from drystone_lab.table import BenchSettings
 from tests.lab.runs import bricks
 
-STAMP = Stamp("1.0", "2026-01-01T00:00:00+00:00", "Linux x86_64")
 SETTINGS = BenchSettings(policies=("paper", "random"), quick=True)
 
 
 def run_public(settings, suite="bricks"):
-    return bench.run_public(suite, settings, STAMP)
+    return bench.run_public(suite, settings, "2026-01-01T00:00:00+00:00")
 
 
 @pytest.fixture
@@ -63,7 +63,7 @@ def test_runs_of_a_store_are_not_done_again(tmp_path, counted):
     rows = kept_runs(tmp_path)
     runs = [("paper", 0), ("paper", 1), ("random", 0), ("random", 1)]
     assert [(row.method, row.seed) for row in rows] == runs
-    assert {row.version for row in rows} == {"1.0"}
+    assert {row.version for row in rows} == {version("drystone")}
     assert len(list((tmp_path / "runs").iterdir())) == 4
     row = rows[0]
     assert (row.suite, row.suite_version, row.placed, row.shaken) == ("bricks", 1, 30, "no")

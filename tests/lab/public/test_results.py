@@ -81,10 +81,12 @@ def test_a_history_has_medians_by_version_oldest_first():
     methods = [one.method for one in medians_of([RUN, other])]
     assert methods == ["paper", 'paper {"sampling": "full"}']
     # A picture has a panel for each figure that is there.
-    axes = drawn_history(medians_of(HISTORY)).axes
+    axes = drawn_history(medians_of([*HISTORY, other])).axes
     labels = ["placed share", "F_SF", "F_AV", "F_AH", "wall, s"]
-    assert [ax.get_ylabel() for ax in axes] == labels
+    assert [(ax.get_xlabel(), ax.get_ylabel()) for ax in axes] == [("version", y) for y in labels]
     assert axes[1].lines[0].get_ydata().tolist() == pytest.approx([0.6, 0.5, 0.7])
+    # A version without a value has no point.
+    assert axes[1].lines[1].get_xydata().tolist() == [[0, 0.8]]
     assert axes[1].get_xticklabels()[0].get_text() == "0.9.0"
 
 
