@@ -4,10 +4,8 @@ import numpy as np
 import pytest
 from hypothesis import example, given
 
-from drystone.metrics.frame import reduce_labels
 from drystone.model.site import Site
 from drystone_lab.second_arrangement import finer_labels, outlined_labels, second_arrangement
-from drystone_lab.walls import MASONS
 from tests.metrics.walls import bricks, walls
 from tests.naive import metrics as naive
 from tests.strategies import repeatable
@@ -31,15 +29,6 @@ def test_is_its_slow_twin(labels):
         None if expected is None else pytest.approx(expected, abs=1e-9)
         for expected in naive.second_definition(labels)
     )
-
-
-@repeatable()
-@given(walls(max_px=40))
-def test_a_mirrored_wall_is_worth_the_same(labels):
-    found = both(labels)
-    assert both(labels[:, ::-1]) == found
-    assert both(labels[::-1]) == found
-    assert both(labels.T) == found[::-1]
 
 
 def test_four_square_stones():
@@ -70,9 +59,3 @@ def test_outlines_are_drawn_three_times_as_fine():
     expected[24 - 15 : 24 - 3, 6:30] = 7
     expected[24 - 12 : 24, 30:54] = 9
     np.testing.assert_array_equal(labels, expected)
-
-
-def test_the_masons_walls(data_dir):
-    for wall, expected in zip(MASONS, [(51.08, 2.05), (39.73, 2.48), (31.66, 5.09)], strict=True):
-        labels = reduce_labels(wall.source.labels(data_dir), wall.scale)
-        assert both(finer_labels(labels)) == pytest.approx(expected, abs=0.006)

@@ -37,19 +37,8 @@ AREAS_PX = {
 
 
 @pytest.mark.parametrize("wall", GENERATED, ids=lambda wall: wall.name)
-def test_stones_fill_85_percent(wall):
-    stones = wall.source.stones(None)
-    assert stones.total_area_px == AREAS_PX[wall.name]
-    assert stones.total_area_px / (wall.width * wall.height) == pytest.approx(0.85, abs=0.01)
-    assert wall.width * wall.scale == round(wall.width * wall.scale)
-    assert wall.height * wall.scale == round(wall.height * wall.scale)
-
-
-def test_published_stones_are_there(data_dir):
-    for wall in walls_of("masons"):
-        assert wall.source.is_there(data_dir)
-        area = wall.source.stones(data_dir).total_area_px
-        assert 0.7 < area / (wall.width * wall.height) < 0.9
+def test_generators_make_the_same_stones(wall):
+    assert wall.source.stones(None).total_area_px == AREAS_PX[wall.name]
 
 
 def test_all_walls_and_some_alone():
