@@ -46,9 +46,14 @@ def run(arguments: argparse.Namespace, items: "Mapping[str, PaperItem] | None" =
             if made.error is not None:
                 print(f"drystone: {made.name}: {made.error}", file=sys.stderr)
             elif not arguments.json and made.record is not None:
-                _print(made.record, made.page)
+                _print(made.record, folder / made.name / PAGE)
     if arguments.json:
-        print_json({"report": str(folder / PAGE), "items": [_as_json(made) for made in done]})
+        print_json(
+            {
+                "report": str(folder / PAGE),
+                "items": [_as_json(made, folder / made.name / PAGE) for made in done],
+            }
+        )
     else:
         print(f"report: {folder / PAGE}")
     return exit_code(done, every=ALL in arguments.names)
@@ -87,7 +92,7 @@ def _print(record: "Mapping[str, Any]", page: Path) -> None:
     print(f"page: {page}\n", flush=True)
 
 
-def _as_json(made: "MadeItem") -> dict[str, Any]:
+def _as_json(made: "MadeItem", page: Path) -> dict[str, Any]:
     """Return what `--json` says of an item: the record, without what was run for it."""
     about: dict[str, Any] = {"name": made.name, "status": made.status}
     if made.error is not None:
@@ -98,4 +103,4 @@ def _as_json(made: "MadeItem") -> dict[str, Any]:
         "title", "section", "request", "made", "taken", "paper", "ours", "tables", "times",
         "pictures",
     )  # fmt: skip
-    return about | {"page": str(made.page)} | {name: record[name] for name in names}
+    return about | {"page": str(page)} | {name: record[name] for name in names}

@@ -25,7 +25,7 @@ DECIMALS = 9
 class BenchResults:
     """Results of every method on every wall with every seed."""
 
-    all: tuple[KeptRun, ...]  # Of each method on each wall for the same seeds
+    all: tuple[KeptRun, ...]  # Of each method for the same walls and seeds, in the same order
 
     @property
     def walls(self) -> tuple[str, ...]:
@@ -44,10 +44,8 @@ class BenchResults:
         return (*FIGURES, SHAKE) if shaken else FIGURES
 
     def of(self, method: str, wall: str | None = None) -> tuple[KeptRun, ...]:
-        """Return the results of a method on a wall or on all, in one order for all methods."""
-        found = [r for r in self.all if r.method == method and wall in (None, r.wall)]
-        order = {known: number for number, known in enumerate(self.walls)}
-        return tuple(sorted(found, key=lambda result: (order[result.wall], result.seed)))
+        """Return the results of a method on a wall or on all."""
+        return tuple(r for r in self.all if r.method == method and wall in (None, r.wall))
 
     def values(self, method: str, figure: str) -> tuple[float | None, ...]:
         """Return a figure of the results of a method, as :meth:`of` orders them."""

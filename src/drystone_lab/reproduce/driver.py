@@ -98,10 +98,6 @@ class ReportFolder:
         mark = _read(self.path / MARK, MARK_SCHEMA)
         return {} if mark is None else mark["misses"]
 
-    def page(self, name: str) -> Path:
-        """Return where the page of an item is."""
-        return self.path / name / PAGE
-
     def record(self, name: str) -> dict[str, Any] | None:
         """Return what the JSON of an item says; None when it was not made, or a file is gone."""
         folder = self.path / name
@@ -136,10 +132,9 @@ class ReportFolder:
             "seeds": sorted({spec.seed for spec in output.runs}),
             "runs": [{"key": spec.key, **spec.as_dict()} for spec in output.runs],
         }
-        write_item_page(self.page(name), record)
+        write_item_page(folder / PAGE, record)
         text = json.dumps(record, ensure_ascii=False, allow_nan=False, indent=1)
         write_whole(path, text.encode())
-        self.miss(name, item, None)
         return record
 
     def miss(self, name: str, item: PaperItem, error: DrystoneError | None) -> None:
@@ -195,7 +190,6 @@ class MadeItem:
     status: Literal["made", "kept", "missing data", "failed"]
     record: Mapping[str, Any] | None  # Contents of its JSON, None when there is none
     error: DrystoneError | None  # Why there is none
-    page: Path  # Its page, if it was made
 
 
 def reproduce(
@@ -212,6 +206,7 @@ def reproduce(
     for name in names:
         progress.begin(name)
         made = _made(name, items[name], report, options, runner)
+        report.miss(name, items[name], made.error)
         records = [record for each in items if (record := report.record(each)) is not None]
         write_page(folder / PAGE, records, report.misses, list(items))
         progress.line(made.status)
@@ -222,7 +217,6 @@ def _made(
     name: str, item: PaperItem, report: ReportFolder, options: Options, runner: Runner
 ) -> MadeItem:
     """Return what becomes of an item: it is kept, made, or there is an error."""
-    page = report.page(name)
     # What the contents depend on, beside the name.  Published are the files that are there: some
     # items leave out rows whose stones are not.
     data, files = options.data, [file.name for each in SETS.values() for file in each.files]
@@ -233,19 +227,15 @@ def _made(
     }  # fmt: skip
     kept = None if options.again else report.record(name)
     if kept is not None and is_met(request, kept["request"]):
-        report.miss(name, item, None)
-        return MadeItem(name, "kept", kept, None, page)
-    absent = [each for each in item.needs if not published(each).is_there(options.data)]
-    if absent:
-        error = absent_data(absent, known=options.data is not None)
-        report.miss(name, item, error)
-        return MadeItem(name, "missing data", None, error, page)
+        return MadeItem(name, "kept", kept, None)
+    absent = [each for each in item.needs if not published(each).is_there(data)]
     begun = time.perf_counter()
     try:
+        if absent:
+            raise absent_data(absent, known=data is not None)
         output = item.make(Context(runner, options.quick, options.seed))
     except DrystoneError as error:
-        report.miss(name, item, error)
-        return MadeItem(name, "failed", None, error, page)
+        return MadeItem(name, "missing data" if absent else "failed", None, error)
     seconds = time.perf_counter() - begun
     # Whenever its walls were planned
     outcomes = [runner.store.get(key) for key in {spec.key for spec in output.runs}]
@@ -261,7 +251,7 @@ def _made(
         },
         "taken": {"seconds": seconds, "walls": len(walls), "wall_seconds": sum(walls)},
     }
-    return MadeItem(name, "made", report.keep(name, item, output, about), None, page)
+    return MadeItem(name, "made", report.keep(name, item, output, about), None)
 
 
 class ItemProgress:

@@ -151,7 +151,6 @@ STRIPS = "spyrrow"
 class RunSpec:
     """A wall to be planned.
 
-    >>> from drystone_lab.runs.spec import generated
     >>> spec = RunSpec(source=generated("brick", 1, count=6), width=60, height=20, scale=1.0,
     ...                changes=(("placement.beta", 0.5),))
     >>> spec.settings().placement.beta
