@@ -158,12 +158,9 @@ class _Table:
     def _lay(self, row: int, col: int, mask: Mask) -> None:
         self.count += 1
         self.labels[_box(row, col, mask)][mask] = self.count
-        gap = self.gap_px
-        around = ndimage.distance_transform_edt(~np.pad(mask, gap)) < gap
-        top, left = max(row - gap, 0), max(col - gap, 0)
-        part = self.taken[top : row - gap + around.shape[0], left : col - gap + around.shape[1]]
-        start = (top - row + gap, left - col + gap)
-        part |= around[start[0] : start[0] + part.shape[0], start[1] : start[1] + part.shape[1]]
+        gap, (height, width) = self.gap_px, mask.shape
+        near = np.s_[max(row - gap, 0) : row + height + gap, max(col - gap, 0) : col + width + gap]
+        self.taken[near] |= ndimage.distance_transform_edt(self.labels[near] == 0) < gap
 
 
 def _box(row: int, col: int, mask: Mask) -> tuple[slice, slice]:

@@ -303,23 +303,21 @@ def photograph(level: PhotoLevel) -> Photograph:
 
 def _light_on_ground(labels: Labels, level: PhotoLevel, rng: Generator) -> Light:
     """Return what reaches the ground, (h, w, 3): cast shadows, and a dim rim below the stones."""
-    shadow = np.zeros(labels.shape, np.float32)
     azimuth = rng.uniform(0, 2 * math.pi)
-    for number, box in enumerate(ndimage.find_objects(labels), start=1):
+    # A stone is .4 times as high as the root of its area.
+    heights = 0.4 * np.sqrt(np.bincount(labels.ravel())[1:])
+    lengths = (heights / math.tan(math.radians(level.sun_deg))).tolist()
+    edge = int(max(lengths, default=0)) + 1  # a shadow may reach beyond the picture
+    wide = np.zeros((labels.shape[0] + 2 * edge, labels.shape[1] + 2 * edge), np.float32)
+    for number, (box, long) in enumerate(
+        zip(ndimage.find_objects(labels), lengths, strict=True), 1
+    ):
         mask = labels[box] == number
-        # A stone is .4 times as high as the root of its area.
-        long = 0.4 * math.sqrt(mask.sum()) / math.tan(math.radians(level.sun_deg))
-        pad = int(long) + 12
-        here = np.zeros((mask.shape[0] + 2 * pad, mask.shape[1] + 2 * pad), bool)
         for step in np.arange(0, long, 1.0):
-            top = pad + round(step * math.sin(azimuth))
-            left = pad + round(step * math.cos(azimuth))
-            here[top : top + mask.shape[0], left : left + mask.shape[1]] |= mask
-        # A shadow may reach beyond the picture.
-        row, col = box[0].start - pad, box[1].start - pad
-        top, left = max(row, 0), max(col, 0)
-        area = shadow[top : row + here.shape[0], left : col + here.shape[1]]
-        area[here[top - row :, left - col :][: area.shape[0], : area.shape[1]]] = 1
+            row = edge + box[0].start + round(step * math.sin(azimuth))
+            col = edge + box[1].start + round(step * math.cos(azimuth))
+            wide[row : row + mask.shape[0], col : col + mask.shape[1]][mask] = 1
+    shadow = wide[edge:-edge, edge:-edge]
     shadow = ndimage.gaussian_filter(shadow, 2.5) * np.float32(level.shadow)
     near = ndimage.distance_transform_edt(labels == 0)
     rim = np.exp(-near / 3.0) * (0.25 if level.shadow else 0.08)
