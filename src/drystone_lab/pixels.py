@@ -32,6 +32,9 @@ STONE_LENGTH = 1.5
 ATTEMPTS = 200
 """How often a joint is drawn anew before the whole wall is, and how often the wall."""
 
+LENGTH, TILTED_MU = 0.9, 0.58
+"""Of a wall of tilted joints; it is 1 high."""
+
 SHORTEST = 0.04
 """Bends and ends of joints are at least this far apart along a bed; the wall is 1 high."""
 
@@ -44,13 +47,13 @@ class TiltedWall:
     # gaps between them
     polygons: tuple[Points, ...]
 
-    def model(self, mu: float = 0.58) -> RigidBlockModel:
+    def model(self) -> RigidBlockModel:
         """Return its exact rigid block model."""
         blocks = [
             {"id": number, "polygon": polygon.tolist()}
             for number, polygon in enumerate(self.polygons, start=1)
         ]
-        return model_from_json({"blocks": blocks, "mu": mu})
+        return model_from_json({"blocks": blocks, "mu": TILTED_MU})
 
     def picture(self, height_px: int, offset_px: ArrayLike = (0.0, 0.0)) -> Labels:
         """Return its label image: a pixel belongs to the stone that its centre lies in.
@@ -68,7 +71,7 @@ class TiltedWall:
         return labels[: filled[-1] + 1]
 
 
-def tilted_wall(rng: Generator, courses: int, length: float = 0.9) -> TiltedWall:
+def tilted_wall(rng: Generator, courses: int) -> TiltedWall:
     """Draw a wall whose bed joints zigzag, whose head joints lean and whose ends have a batter.
 
     Bends and ends of joints are at least `SHORTEST` apart along a bed.  A facet smaller than a
@@ -79,25 +82,25 @@ def tilted_wall(rng: Generator, courses: int, length: float = 0.9) -> TiltedWall
     (7, (40, 36))
     """
     for _ in range(ATTEMPTS):
-        if polygons := _attempt(rng, courses, length):
+        if polygons := _attempt(rng, courses):
             return TiltedWall(polygons)
-    raise ValueError(f"no wall of {courses} courses, {length} long, has joints far enough apart")
+    raise ValueError(f"no wall of {courses} courses, {LENGTH} long, has joints far enough apart")
 
 
-def _attempt(rng: Generator, courses: int, length: float) -> tuple[Points, ...]:
+def _attempt(rng: Generator, courses: int) -> tuple[Points, ...]:
     """Draw course after course; give up, without stones, where joints come too close."""
     # The ends of the wall lean inwards by as many degrees.
     left, right = np.tan(np.radians(rng.permutation((3.0, 5.0))))
-    outline = shapely.Polygon([(0, 0), (length, 0), (length - right, 1), (left, 1)])
-    lower = np.array([[-1.0, 0.0], [length + 1.0, 0.0]])
+    outline = shapely.Polygon([(0, 0), (LENGTH, 0), (LENGTH - right, 1), (left, 1)])
+    lower = np.array([[-1.0, 0.0], [LENGTH + 1.0, 0.0]])
     polygons: list[Points] = []
     below: list[Points] = []
     for course in range(courses):
-        draws = (_heads(rng, course, length, courses) for _ in range(ATTEMPTS))
+        draws = (_heads(rng, course, courses) for _ in range(ATTEMPTS))
         heads = next((h for h in draws if _are_apart(lower, [*below, *h], outline)), None)
         if heads is None:
             return ()
-        beds = (_bed(rng, course + 1, length, courses) for _ in range(ATTEMPTS))
+        beds = (_bed(rng, course + 1, courses) for _ in range(ATTEMPTS))
         upper = next((bed for bed in beds if _are_apart(bed, heads, outline)), None)
         if upper is None:
             return ()
@@ -111,11 +114,11 @@ def _attempt(rng: Generator, courses: int, length: float) -> tuple[Points, ...]:
     return tuple(polygons)
 
 
-def _heads(rng: Generator, course: int, length: float, courses: int) -> list[Points]:
+def _heads(rng: Generator, course: int, courses: int) -> list[Points]:
     """Draw the lines of the head joints, half a stone further on in every other course."""
-    count = max(2, round(length * courses / STONE_LENGTH))
+    count = max(2, round(LENGTH * courses / STONE_LENGTH))
     steps = np.cumsum(rng.uniform(0.85, 1.15, count + 1))
-    places = (steps - 0.5 * (course % 2) * steps[0]) / steps[-2] * length
+    places = (steps - 0.5 * (course % 2) * steps[0]) / steps[-2] * LENGTH
     middle = (course + 0.5) / courses
     lines = []
     for place in places[: count - 1 + course % 2].tolist():
@@ -125,16 +128,16 @@ def _heads(rng: Generator, course: int, length: float, courses: int) -> list[Poi
     return lines
 
 
-def _bed(rng: Generator, course: int, length: float, courses: int) -> Points:
+def _bed(rng: Generator, course: int, courses: int) -> Points:
     """Draw the bed below a course, a zigzag with pieces about as long as a stone; flat at the top.
 
     It reaches beyond the wall on both sides.
     """
     if course == courses:
-        return np.array([[-1.0, 1.0], [length + 1.0, 1.0]])
+        return np.array([[-1.0, 1.0], [LENGTH + 1.0, 1.0]])
     x, y = [float(rng.uniform(-1.0, -0.5))], [0.0]
     sign = float(rng.choice([-1.0, 1.0]))
-    while x[-1] < length + 0.5:
+    while x[-1] < LENGTH + 0.5:
         slope_deg = float(rng.choice((4.0, 7.0, 11.0)))
         slope = sign * math.tan(math.radians(slope_deg))
         run = float(rng.uniform(0.7, 1.3)) * STONE_LENGTH / courses
@@ -160,12 +163,7 @@ COURSES = (3, 4, 5)
 
 
 def refinement_errors(
-    heights_px: Sequence[int],
-    *,
-    walls: int = 9,
-    offsets: int = 3,
-    mu: float = 0.58,
-    seed: int = 0,
+    heights_px: Sequence[int], *, walls: int = 9, offsets: int = 3, seed: int = 0
 ) -> NDArray[np.float64]:
     """Compare pictures of walls of tilted joints with their polygons.
 
@@ -182,12 +180,12 @@ def refinement_errors(
         tilted_wall(np.random.default_rng(wall_seed), COURSES[i % len(COURSES)])
         for i, wall_seed in enumerate(seeds)
     ]
-    exact = [_alphas(wall.model(mu)) for wall in drawn]
+    exact = [_alphas(wall.model()) for wall in drawn]
     # An even sequence of sub-pixel positions (Roberts's R2)
     numbers = np.arange(offsets)[:, None]
     places = (0.5 + numbers * (0.7548776662466927, 0.5698402909980532)) % 1.0
     errors = [
-        np.abs(_alphas(model_of(wall.picture(height_px, place), mu)) - true)
+        np.abs(_alphas(model_of(wall.picture(height_px, place), TILTED_MU)) - true)
         for height_px in heights_px
         for model_of in (from_pixels, from_outlines)
         for wall, true in zip(drawn, exact, strict=True)

@@ -21,6 +21,7 @@ from drystone.statics.flow.nonassociative import nonassociative_load
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.loads import Loads, point_load, weight
 from drystone.statics.model import RigidBlockModel
+from drystone_lab.reproduce.cells import rounded
 from drystone_lab.table import BENCH, BenchSettings, Cell, Table, worded
 
 GRAVITY = 9.81
@@ -161,7 +162,7 @@ def predict(series: ShearSeries, loading: Loading) -> ShearForces:
     )  # fmt: skip
     associative = lateral_resistance(model, loads).right.alpha
     without = nonassociative_load(model, "right", loads=loads).alpha
-    return ShearForces(_rounded(associative, 6), _rounded(without, 6))
+    return ShearForces(rounded(associative, 6), rounded(without, 6))
 
 
 def run(settings: BenchSettings) -> tuple[Table, ...]:
@@ -222,7 +223,7 @@ def _predicted(model: ShearModel, all_series: Sequence[ShearSeries]) -> Table:
             tests = [test for test in series.tests if test.vertical_kn == vertical]
             peaks = [peak for test in tests for peak in test.peaks_kn]
             measured = f"{min(peaks):g} to {max(peaks):g}" if len(peaks) > 1 else f"{peaks[0]:g}"
-            values = [_rounded(v, 1) for v in _four(model, series, vertical)]
+            values = [rounded(v, 1) for v in _four(model, series, vertical)]
             rows.append((series.name, vertical, len(tests), measured, *values))
     about = (
         f"{series.name}: {series.course_count} courses of {series.block_length:g} x "
@@ -239,7 +240,7 @@ def _by_test(model: ShearModel, all_series: Sequence[ShearSeries]) -> Table:
     for series in all_series:
         for test, ratios in zip(series.tests, _ratios(model, [series]), strict=True):
             peaks = " / ".join(f"{peak:g}" for peak in test.peaks_kn)
-            values = [_rounded(ratio, 2) for ratio in ratios]
+            values = [rounded(ratio, 2) for ratio in ratios]
             rows.append((test.name, test.vertical_kn, peaks, *values))
     return _worded("by_test", rows)
 
@@ -274,7 +275,7 @@ def _details(model: ShearModel) -> Table:
         for vertical in (loads[0], loads[-1]):
             for name, varied, halves in variants:
                 loading = Loading(vertical, level=False, halves_first=halves)
-                values = (_rounded(v, 2) for v in model(varied, loading))
+                values = (rounded(v, 2) for v in model(varied, loading))
                 rows.append((series.name, vertical, name, *values))
     return _worded("details", rows)
 
@@ -283,10 +284,6 @@ def _mean_and_deviation(ratios: Sequence[Sequence[float | None]]) -> list[str]:
     """Return mean and standard deviation of every column, of the answers that there are."""
     columns = ([v for v in column if v is not None] for column in zip(*ratios, strict=True))
     return [f"{fmean(v):.2f} ± {stdev(v):.2f}" if len(v) > 1 else "-" for v in columns]
-
-
-def _rounded(value: float | None, digits: int) -> float | None:
-    return None if value is None else round(value, digits)
 
 
 def _draw(model: ShearModel, path: Path) -> None:

@@ -54,20 +54,26 @@ def panel_sheet(
     return sheet, panels[:count]
 
 
-def plot_groups(
-    groups: Mapping[str, GroupValues],
-    ax: Axes | None = None,
+def group_panels(
+    figures: Mapping[str, Mapping[str, GroupValues]],
     *,
-    figure: str = "",
-    claims: Mapping[str, float] | None = None,
-) -> Axes:
-    """Draw the values of each group as a strip of points, and its median as a line.
+    title: str = "",
+    claims: Mapping[str, Mapping[str, float]] | None = None,
+) -> Figure:
+    """Draw several figures of the same groups, a panel each: points in strips, medians as lines.
 
-    >>> ax = plot_groups({"rotation": [0.7, 0.8], "wedge": [0.6, None]}, figure="F_SF")
-    >>> [text.get_text() for text in ax.get_xticklabels()]
+    >>> sheet = group_panels({"F_SF": {"rotation": [0.7, 0.8], "wedge": [0.6, None]}})
+    >>> [text.get_text() for text in sheet.axes[0].get_xticklabels()]
     ['rotation', 'wedge']
     """
-    ax = Figure(figsize=PANEL_IN).add_subplot() if ax is None else ax
+    sheet, panels = panel_sheet(len(figures), 4, PANEL_IN, title)
+    for ax, (name, groups) in zip(panels, figures.items(), strict=True):
+        _draw_groups(ax, groups, (claims or {}).get(name, {}))
+        ax.set_ylabel(name, fontsize=8)
+    return sheet
+
+
+def _draw_groups(ax: Axes, groups: Mapping[str, GroupValues], claims: Mapping[str, float]) -> None:
     for place, (name, values) in enumerate(groups.items()):
         colour, marker = LOOKS[place % len(LOOKS)]
         found = [value for value in values if value is not None]
@@ -82,7 +88,7 @@ def plot_groups(
             ax.plot(ends, [middle, middle], color=OUTLINE_COLOUR, linewidth=1.6,
                     gid=f"median-{name}")  # fmt: skip
     places = {name: place for place, name in enumerate(groups)}
-    for number, (name, value) in enumerate((claims or {}).items()):
+    for number, (name, value) in enumerate(claims.items()):
         ax.plot([places[name]], [value], "x", color=OUTLINE_COLOUR, markersize=7,
                 label="the paper" if number == 0 else "_again", gid=f"claim-{name}")  # fmt: skip
     ax.set_xlim(-0.6, len(groups) - 0.4)
@@ -93,26 +99,11 @@ def plot_groups(
         range(len(groups)), list(groups), fontsize=7, rotation=30 if turned else 0,
         ha="right" if turned else "center",
     )  # fmt: skip
-    ax.set_ylabel(figure, fontsize=8)
     ax.tick_params(axis="y", labelsize=7)
     ax.grid(axis="y", color=GREY, linewidth=0.3, alpha=0.5)
     if claims:
         ax.legend(fontsize=7, frameon=False, loc="lower right", bbox_to_anchor=(1.0, 1.0),
                   borderaxespad=0.2)  # fmt: skip
-    return ax
-
-
-def group_panels(
-    figures: Mapping[str, Mapping[str, GroupValues]],
-    *,
-    title: str = "",
-    claims: Mapping[str, Mapping[str, float]] | None = None,
-) -> Figure:
-    """Draw several figures of the same groups, a panel each."""
-    sheet, panels = panel_sheet(len(figures), 4, PANEL_IN, title)
-    for ax, (name, groups) in zip(panels, figures.items(), strict=True):
-        plot_groups(groups, ax, figure=name, claims=(claims or {}).get(name))
-    return sheet
 
 
 def plot_two_figures(groups: Mapping[str, Pairs], *, across: str, up: str) -> Axes:

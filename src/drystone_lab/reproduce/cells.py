@@ -47,9 +47,9 @@ def metric_cells(outcome: RunOutcome) -> tuple[Cell, ...]:
     return tuple(rounded(outcome.figures[name]) for name in METRICS)
 
 
-def rounded(value: float | None) -> float | None:
+def rounded(value: float | None, digits: int = 4) -> float | None:
     """Return a number to the decimals that all machines agree on; an integer stays what it is."""
-    return None if value is None else round(value, 4)
+    return None if value is None else round(value, digits)
 
 
 def in_words(figures: Mapping[str, float | None]) -> str:

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from drystone.drawing.palette import PLAIN_COLOUR, cluster_colour
 from drystone.planner.profile import StepTime
 from drystone_lab.pictures import charts, walls
-from drystone_lab.pictures.charts import Prediction, group_panels, plot_groups
+from drystone_lab.pictures.charts import Prediction, group_panels
 from tests.drawing.examples import CLUSTERS, WEDGE, wall
 
 VALUES = {"both": [0.8, 0.7, 0.9, 0.75, 0.72, 0.71], "none": [0.5, None, 0.4], "empty": [None]}
@@ -22,7 +22,8 @@ def _line(ax, gid):
 
 
 def test_points_are_the_values_lines_their_medians_and_crosses_claims():
-    ax = plot_groups(VALUES, figure="F_SF", claims={"none": 0.6})
+    figure = group_panels({"F_SF": VALUES, "F_LR": VALUES}, claims={"F_SF": {"none": 0.6}})
+    ax, other = figure.axes
     assert list(_line(ax, "group-both").get_ydata()) == VALUES["both"]
     assert list(_line(ax, "group-none").get_ydata()) == [0.5, 0.4]
     assert set(_line(ax, "median-both").get_ydata()) == {median(VALUES["both"])}
@@ -32,7 +33,7 @@ def test_points_are_the_values_lines_their_medians_and_crosses_claims():
     assert ax.get_ylabel() == "F_SF"
     assert _line(ax, "claim-none").get_xydata().tolist() == [[1, 0.6]]
     assert [text.get_text() for text in ax.get_legend().get_texts()] == ["the paper"]
-    assert plot_groups(VALUES).get_legend() is None
+    assert other.get_legend() is None
 
 
 @pytest.mark.parametrize(("count", "columns"), [(1, 1), (4, 4), (5, 3), (8, 4), (12, 4)])
