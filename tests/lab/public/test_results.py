@@ -77,7 +77,7 @@ def test_a_history_has_medians_by_version_oldest_first():
     assert len(history_table(medians_of(HISTORY)).notes) == 1
     (_, warning) = history_table(medians_of(HISTORY[1:])).notes
     assert "bricks/1 paper" in warning
-    other = replace(RUN, run_key="c", settings='{"sampling": "full"}')
+    other = replace(RUN, run_key="c", version="0.10.0", settings='{"sampling": "full"}')
     methods = [one.method for one in medians_of([RUN, other])]
     assert methods == ["paper", 'paper {"sampling": "full"}']
     # A picture has a panel for each figure that is there.
@@ -86,7 +86,7 @@ def test_a_history_has_medians_by_version_oldest_first():
     assert [(ax.get_xlabel(), ax.get_ylabel()) for ax in axes] == [("version", y) for y in labels]
     assert axes[1].lines[0].get_ydata().tolist() == pytest.approx([0.6, 0.5, 0.7])
     # A version without a value has no point.
-    assert axes[1].lines[1].get_xydata().tolist() == [[0, 0.8]]
+    assert axes[1].lines[1].get_xydata().tolist() == [[2, 0.8]]
     assert axes[1].get_xticklabels()[0].get_text() == "0.9.0"
 
 

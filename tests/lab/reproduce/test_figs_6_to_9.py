@@ -93,6 +93,11 @@ def test_counting_again_agrees_everywhere(places):
                 assert again == pytest.approx(place.values[name], abs=1e-12), (name, place.order)
                 seen.add(name)
     assert seen == {"LFR", "GDS", "NHR", "IWR", "IS"}
+    # On the ground there are no joints below, however low a stone beside is.
+    assert (
+        "IWR"
+        not in resting(9, 20, slab(6, 4), (3, 8), (7, 2, slab(2, 6)), (7, 12, slab(2, 6))).values
+    )
 
 
 def test_the_stone_of_fig7_stands_where_the_run_left_it(folder, outputs, amid):
