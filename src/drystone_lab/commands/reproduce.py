@@ -48,12 +48,8 @@ def run(arguments: argparse.Namespace, items: "Mapping[str, PaperItem] | None" =
             elif not arguments.json and made.record is not None:
                 _print(made.record, folder / made.name / PAGE)
     if arguments.json:
-        print_json(
-            {
-                "report": str(folder / PAGE),
-                "items": [_as_json(made, folder / made.name / PAGE) for made in done],
-            }
-        )
+        told = [_as_json(made, folder / made.name / PAGE) for made in done]
+        print_json({"report": str(folder / PAGE), "items": told})
     else:
         print(f"report: {folder / PAGE}")
     return exit_code(done, every=ALL in arguments.names)

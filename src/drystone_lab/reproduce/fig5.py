@@ -122,11 +122,6 @@ def _clusters(sets: Clustered) -> Rows:
         yield cluster, len(ids), *map(rounded, means), " ".join(map(str, ids))
 
 
-def _stones(sets: Clustered) -> Rows:
-    for stone, features in zip(sets[0].stones, sets[0].features.tolist(), strict=True):
-        yield stone.id, sets[0].clusters[stone.id], *map(rounded, features)
-
-
 def _picture(sets: Clustered) -> ItemFigure:
     drawn = sets[0]
     figure = Figure(figsize=(7.2, 6.4), layout="constrained")
@@ -148,7 +143,10 @@ CLUSTERS = PaperItem(
     claims=_claims,
     tables={
         "clusters": _clusters,
-        "stones": _stones,
+        "stones": lambda sets: [
+            (stone.id, sets[0].clusters[stone.id], *map(rounded, features))
+            for stone, features in zip(sets[0].stones, sets[0].features.tolist(), strict=True)
+        ],
         "thresholds": lambda sets: [
             (one.name, len(one.stones), *(one.counts[distance] for distance in DISTANCES))
             for one in sets

@@ -259,11 +259,6 @@ def pixel_rows(name: str, by_scale: Mapping[float, TimedWall]) -> Rows:
     yield three_digits(("exponent over pixels", None, None, *steps, whole, None, longest, None))
 
 
-def _scales(found: ScaledWalls) -> Rows:
-    for (scale, wall), one in zip(found.timed.items(), found.built, strict=True):
-        yield scale, wall.size, *placed_of(one.outcomes[0]), *metric_cells(one.outcomes[0])
-
-
 def _scales_pictures(found: ScaledWalls) -> Iterator[ItemFigure]:
     ids = sorted({i for one in found.built for i in one.outcomes[0].clusters})
     colours = {stone_id: number for number, stone_id in enumerate(ids, 1)}
@@ -290,7 +285,12 @@ def _scales_pictures(found: ScaledWalls) -> Iterator[ItemFigure]:
 RESOLUTION = PaperItem(
     study=by_scale,
     claims=lambda found: scale_findings(found.timed),
-    tables={"walls": _scales},
+    tables={
+        "walls": lambda found: [
+            (scale, wall.size, *placed_of(one.outcomes[0]), *metric_cells(one.outcomes[0]))
+            for (scale, wall), one in zip(found.timed.items(), found.built, strict=True)
+        ]
+    },
     times={
         "released": lambda found: released_rows(
             found.built.context.data, {str(scale): wall for scale, wall in found.timed.items()}

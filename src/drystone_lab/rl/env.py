@@ -282,9 +282,8 @@ class WallEnv(gymnasium.Env[WallObservation, np.int64]):
 
 
 def _refused(what: str) -> UsageError:
-    what = f"{what}."
     cure = "docs/evidence/learning.md lists what there is."
-    return UsageError("E123", what, where="drystone/Wall-v0", cure=cure)
+    return UsageError("E123", f"{what}.", where="drystone/Wall-v0", cure=cure)
 
 
 def _no_action(what: str, cure: str) -> UsageError:
