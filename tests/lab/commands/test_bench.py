@@ -75,7 +75,7 @@ def test_options_that_a_suite_does_not_go_by(who, given, run, tmp_path, monkeypa
         ((), "suite"),
         (("speed",), "'speed'"),
         (("search", "--policy", "annealing"), "--policy"),
-        (("search", "--only", "Q"), "--only"),
+        (("search", "--quick", "--only", "Q"), "--only"),
         (("search", "--seconds", "0"), "--seconds"),
         (("bricks", "--again"), "--again"),
         (("bricks", "--suite", "masons"), "two suites"),
