@@ -155,8 +155,7 @@ def _alpha_of(values: NDArray[Any], clear: Any) -> NDArray[Any] | None:
 
 def _read_tiff(data: bytes, max_px: int) -> Picture:
     check = partial(check_size, max_px=max_px)
-    page = inspect_tiff(data)
-    check(page.width, page.height)
+    page = inspect_tiff(data, check)
     if page.unreadable:
         raise unread(
             f"TIFF with {page.unreadable} cannot be read.",
@@ -356,8 +355,6 @@ _BLOCK_PX = 2**20
 class TiffPage:
     """What must be known before a TIFF is decoded."""
 
-    width: int  # px
-    height: int
     lossy: bool  # JPEG inside TIFF
     unreadable: str  # why it cannot be decoded without loss; empty when it can
     colours: str  # colour mode that holds no ids, such as CMYK; empty for all others
@@ -370,8 +367,8 @@ class TiffPage:
     page: Any  # of tifffile
 
 
-def inspect_tiff(data: bytes) -> TiffPage:
-    """Read the tags of a TIFF and decode nothing."""
+def inspect_tiff(data: bytes, check: Callable[[int, int], None]) -> TiffPage:
+    """Read the tags of a TIFF, check its width and height, and decode nothing."""
     pages = _count_pages(data)
     if pages > 1:
         raise several_pages(f"{pages} pages")
@@ -392,8 +389,6 @@ def inspect_tiff(data: bytes) -> TiffPage:
         missing, chunks = sum(count == 0 for count in page.databytecounts), math.prod(page.chunked)
         lossy = compression in _LOSSY
         found = TiffPage(
-            width=int(page.imagewidth),
-            height=int(page.imagelength),
             lossy=lossy,
             unreadable=_unreadable(page),
             colours="" if lossy and photometric == 6 else _NO_IDS.get(photometric, ""),
@@ -407,6 +402,7 @@ def inspect_tiff(data: bytes) -> TiffPage:
         )
     if planes > 1 or channels > 4:
         raise several_pages(f"{planes} planes" if planes > 1 else f"{channels} channels")
+    check(int(page.imagewidth), int(page.imagelength))
     return found
 
 

@@ -170,7 +170,7 @@ def read_npz(data: bytes, max_px: int) -> NDArray[Any] | OutlineFile:
         for name, member in _members(data, max_px).items()
     }
     alone = found.get("labels", next(iter(found.values())) if len(found) == 1 else None)
-    return _masks(found) if alone is None else np.asarray(alone)
+    return _masks(found, max_px) if alone is None else np.asarray(alone)
 
 
 def _members(data: bytes, max_px: int) -> dict[str, bytes]:
@@ -199,8 +199,8 @@ def _broken(why: str) -> InputError:
     return damaged(why, cure="Export it again, without pickled objects.")
 
 
-def _masks(found: Mapping[str, NDArray[Any]]) -> OutlineFile:
-    gathered = Gathered()
+def _masks(found: Mapping[str, NDArray[Any]], max_px: int) -> OutlineFile:
+    gathered = Gathered(max_px)
     shapes = {array.shape for array in found.values()}
     if len(shapes) != 1 or len(next(iter(shapes))) != 2:
         raise unusable(f"its arrays are not masks of one picture: shapes {sorted(shapes)}")

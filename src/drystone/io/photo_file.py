@@ -122,8 +122,7 @@ def _by_pillow(data: bytes, check: Callable[[int, int], None]) -> tuple[NDArray[
 
 
 def _tiff(data: bytes, check: Callable[[int, int], None]) -> tuple[NDArray[Any], int]:
-    page = images.inspect_tiff(data)
-    check(page.width, page.height)
+    page = images.inspect_tiff(data, check)
     if page.bits <= 8:
         # Pillow turns a TIFF by itself when it reads it: taken back, so that it is said.
         values, orientation = _by_pillow(data, check)

@@ -79,6 +79,11 @@ class ReadSettings:
     up: Up = ""
     image: str = ""
 
+    @property
+    def max_px(self) -> int:
+        """Px of the largest picture that is decoded."""
+        return int(self.max_image_mpx * 1e6)
+
     def changed(self) -> tuple[tuple[str, Any], ...]:
         """Return the settings that are not the defaults, as names and JSON values."""
         values = [(field.name, getattr(self, field.name), field.default) for field in fields(self)]

@@ -25,7 +25,7 @@ from drystone.io.outlines_in.dxf import is_dxf, read_dxf
 from drystone.io.outlines_in.meshes import mesh_kind, read_mesh
 from drystone.io.outlines_in.model import METRES, OutlineFile, numbered, without_wedges
 from drystone.io.outlines_in.raster import in_px, rastered
-from drystone.io.outlines_in.svg import is_svg, read_svg
+from drystone.io.outlines_in.svg import read_svg
 from drystone.io.patches import (
     MIN_AREA_PX,
     StonePatch,
@@ -97,12 +97,12 @@ def read_stones(
             return stones_and_outlines(reader, data, name, settings)[0]
         sidecar = read_sidecar(path)
         if masks.is_npz(data):
-            arrays = masks.read_npz(data, _max_px(settings))
+            arrays = masks.read_npz(data, settings.max_px)
             if isinstance(arrays, OutlineFile):
                 return stones_and_outlines(lambda *_: arrays, data, name, settings)[0]
             picture = Picture(arrays)
         else:
-            picture = decode(data, _max_px(settings))
+            picture = decode(data, settings.max_px)
         # What has no two sides is refused below.
         scale = scale_beside(sidecar, picture.values.shape[1::-1], path)
         photograph = () if sidecar is None else sidecar.photograph
@@ -119,13 +119,8 @@ def read_stones(
 
 def _of_px(settings: ReadSettings) -> tuple[tuple[str, Any], ...]:
     """Return what a plan must keep of the settings with which a picture was read."""
-    check_unit(None, settings)
-    check_not_asked(settings, "image", "label", "up")
+    _check_asked(None, {"image": False, "label": False, "up": False}, settings)
     return replace(settings, px_per_m=None).changed()
-
-
-def _max_px(settings: ReadSettings) -> int:
-    return int(settings.max_image_mpx * 1e6)
 
 
 def _read_array(array: Any, settings: ReadSettings) -> StoneSet:
@@ -218,7 +213,7 @@ def _read_folder(folder: Path, name: str, settings: ReadSettings) -> StoneSet:
         digest.update(hashlib.sha256(data).digest())
         where = f"{name}/{own}"
         with naming(where):
-            picture = decode(data, _max_px(settings))
+            picture = decode(data, settings.max_px)
             said: tuple[Notice, ...] = ()
             try:
                 mask, said = _mask_of_one(picture, where, settings)
@@ -311,14 +306,14 @@ def outline_reader(data: bytes, name: str) -> Reader | None:
     # The two letters of a BMP may begin a text, too.
     if not data or data.startswith(BEGINNING) or format_of(data) not in ("", "BMP"):
         return None
-    begins = data[:64].lstrip(b"\xef\xbb\xbf \t\r\n")[:1]
+    head, begins = data[:4096], data[:64].lstrip(b"\xef\xbb\xbf \t\r\n")[:1]
     if suffix in {".json", ".geojson"} or begins in (b"{", b"["):
         return _read_json
     # A drawing names itself; the text of an OBJ is told by its lines, so it comes last.
     readers: tuple[tuple[bool, Reader], ...] = (
-        (suffix == ".txt" and annotations.is_yolo(data), annotations.read_yolo),
-        (begins == b"<" and annotations.is_cvat(data), annotations.read_cvat),
-        (is_svg(data, suffix), read_svg),
+        (suffix == ".txt" and bool(annotations.YOLO.match(data)), annotations.read_yolo),
+        (begins == b"<" and b"<annotations" in head, annotations.read_cvat),
+        (suffix == ".svg" or b"<svg" in head or b":svg" in head, read_svg),
         (suffix != ".bmp" and is_dxf(data, suffix), read_dxf),
     )
     for is_one, reader in readers:
@@ -369,16 +364,8 @@ def stones_and_outlines(
     # What is not finite is refused; NumPy would warn of it as well.
     with np.errstate(all="ignore"):
         file = in_px(read(data, settings), settings)
-    check_unit(file.unit_m, settings)
-    # Outlines say themselves what tells stone from background in pictures.
-    mask = "--no-mask" if settings.mask is False else "--mask"
-    for which, option in (("background", "--background"), ("mask", mask)):
-        if which in dict(settings.changed()):
-            what = f"this file says itself what is stone, so {option} has no meaning."
-            cure = f"Leave {option} ({which} in Python) out: it is for pictures of stones."
-            raise unfit(what, cure)
-    there = {"image": file.names_images, "up": file.in_space}
-    check_not_asked(settings, *(option for option, has in there.items() if not has))
+    there = {"background": False, "mask": False, "image": file.names_images, "up": file.in_space}
+    _check_asked(file.unit_m, there, settings)
     # Half a character pair can be neither printed nor written.
     named = [
         replace(stone, name=stone.name.encode("utf-8", "replace").decode()) for stone in file.stones
@@ -397,31 +384,35 @@ def stones_and_outlines(
     return stone_set(patches, notices, source, settings), file
 
 
-def check_unit(unit_m: float | None, settings: ReadSettings) -> None:
-    """Refuse a unit in the settings that is not that of the file (E118)."""
+_SAID = "this file says itself what is stone, so {option} has no meaning.", "pictures of stones"
+_ELSEWHERE = {
+    "background": _SAID,
+    "mask": _SAID,
+    "image": (
+        "there is no choice of images here, as for {value!r}.",
+        "annotations that name their images (COCO, masks of SAM)",
+    ),
+    "label": (
+        "a picture of stones has no classes, as {value!r}.",
+        "annotations; --skip leaves out ids",
+    ),
+    "up": ("this file has no third axis that could be up, as for {value!r}.", "meshes and DXF"),
+}
+"""Options that have no meaning for some files: what there is not, and what they are for."""
+
+
+def _check_asked(unit_m: float | None, there: Mapping[str, bool], settings: ReadSettings) -> None:
+    """Refuse a unit that is not that of the file, and options for what is not `there` (E118)."""
     asked = METRES.get(settings.unit)
     same = asked == unit_m or (asked and unit_m and abs(asked / unit_m - 1.0) < 1e-6)
     if settings.unit and not same:
         own = "px" if unit_m is None else f"a unit of its own ({unit_m:g} m)"
         cure = "Leave the unit out: it is for drawings that do not say theirs."
         raise unfit(f"this file is in {own}, not in {settings.unit}.", cure)
-
-
-_ELSEWHERE = {
-    "image": (
-        "there is no choice of images here, as for {}.",
-        "annotations that name their images (COCO, masks of SAM)",
-    ),
-    "label": ("a picture of stones has no classes, as {}.", "annotations; --skip leaves out ids"),
-    "up": ("this file has no third axis that could be up, as for {}.", "meshes and DXF"),
-}
-"""Options that have no meaning for some files: what there is not, and what they are for."""
-
-
-def check_not_asked(settings: ReadSettings, *options: str) -> None:
-    """Refuse options that have no meaning for what is read (E118)."""
-    for option in options:
-        if value := getattr(settings, option):
-            what, kinds = _ELSEWHERE[option]
-            cure = f"Leave --{option} ({option} in Python) out: it is for {kinds}."
-            raise unfit(what.format(repr(value)), cure)
+    for name, has in there.items():
+        value = getattr(settings, name)
+        if not has and (value or value is False):
+            what, kinds = _ELSEWHERE[name]
+            option = "--no-mask" if value is False else f"--{name}"
+            cure = f"Leave {option} ({name} in Python) out: it is for {kinds}."
+            raise unfit(what.format(option=option, value=value), cure)

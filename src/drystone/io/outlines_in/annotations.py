@@ -26,6 +26,7 @@ from drystone.io.patches import PlacedMask
 from drystone.io.photo_beside import photograph_in
 from drystone.io.read_settings import MOST_PX_PER_M, ReadSettings
 from drystone.kernels.polygons import Points
+from drystone.kernels.raster import turn
 
 _MARKED = {"proposed": "proposals that nobody accepted", "not_used": "marked as not to be used"}
 _BACK = "Open the file in outlines.html to change that."
@@ -40,7 +41,7 @@ def read_labelme(content: Mapping[str, Any], settings: ReadSettings) -> OutlineF
     Shapes of one label and ``group_id`` are one stone.  A label that is a number, also after
     the word stone, is its id.  The table ``drystone`` is that of our own page of outlines.
     """
-    gathered = Gathered(settings)
+    gathered = Gathered(settings.max_px)
     for number, shape in enumerate(content["shapes"]):
         with entry(f"shape {number} (from 0)"):
             kind, label = shape.get("shape_type") or "polygon", str(shape.get("label") or "")
@@ -163,7 +164,7 @@ def _annotated(
     *,
     by_model: bool,
 ) -> OutlineFile:
-    gathered, masks_of_crowds, sizes = Gathered(settings), 0, {picture.size_px}
+    gathered, masks_of_crowds, sizes = Gathered(settings.max_px), 0, {picture.size_px}
     only_crowds = all(map(_is_crowd, picture.shapes))
     for number, found in enumerate(picture.shapes):
         where = f"{what} {found.get('id', number)}"
@@ -334,7 +335,7 @@ def read_geojson(content: Any, settings: ReadSettings) -> OutlineFile:
     if unit not in (*model.METRES, "px"):
         what = f"its unit {short(repr(unit))} is not known."
         raise InputError("E116", what, cure=f"Use one of px, {', '.join(model.METRES)}.")
-    gathered = Gathered()
+    gathered = Gathered(settings.max_px)
     with entry("the list of features"):
         kind = content["type"]
         alone = content if kind == "Feature" else {"geometry": content}
@@ -413,7 +414,7 @@ def read_nesting(content: Mapping[str, Any], settings: ReadSettings) -> OutlineF
 
     Where items lie over each other, as each has an origin of its own, they are laid in a row.
     """
-    gathered, copies = Gathered(), 0
+    gathered, copies = Gathered(settings.max_px), 0
     stones = gathered.stones
     for number, item in enumerate(map(_lower, _lower(content)["items"])):
         where, before = f"item {number} (from 0)", len(stones)
@@ -481,7 +482,8 @@ def _in_a_row(
 
 
 _CLASSES_OF_VIA = ("class", "label", "type", "category", "name")
-_YOLO = re.compile(rb"\s*[0-9]+(?:[ \t]+-?[0-9.]+(?:[eE][-+]?[0-9]+)?){4,}[ \t]*\r?(?:\n|\Z)")
+YOLO = re.compile(rb"\s*[0-9]+(?:[ \t]+-?[0-9.]+(?:[eE][-+]?[0-9]+)?){4,}[ \t]*\r?(?:\n|\Z)")
+"""A line of a class and coordinates."""
 
 
 def _text(value: Any) -> str:
@@ -491,12 +493,6 @@ def _text(value: Any) -> str:
     if isinstance(value, list):
         value = value[0] if value else ""
     return "" if value is None else str(value)
-
-
-def _turned(corners: Any, degrees: float, about: tuple[float, float]) -> Any:
-    """Turn corners clockwise, as y runs down."""
-    sine, cosine = math.sin(math.radians(degrees)), math.cos(math.radians(degrees))
-    return (corners - about) @ np.array([[cosine, sine], [-sine, cosine]]) + about
 
 
 # Label Studio
@@ -538,7 +534,7 @@ def read_label_studio(content: Any, settings: ReadSettings) -> OutlineFile:
             own = str(task.get("id", ""))
             pictures.append(Pictured(name, None, made[-1], own, len(made) - 1))
     picture = chosen(pictures, settings.image)
-    found, sizes = Gathered(settings), set()
+    found, sizes = Gathered(settings.max_px), set()
     found.aside["earlier annotations of the same picture"] = picture.earlier
     # Where shape and class are marked one after the other, both hold the outline.
     drawn = {str(one.get("id") or i): one for i, one in enumerate(picture.shapes)}
@@ -567,12 +563,14 @@ def _of_label_studio(value: Mapping[str, Any], across: float, down: float) -> An
         points = np.array([list(map(float, point)) for point in value["points"]])
         return points * (across, down)
     x, y = float(value["x"]) * across, float(value["y"]) * down
-    turn = float(value.get("rotation") or 0.0)
+    clockwise_deg = float(value.get("rotation") or 0.0)
     if "radiusX" in value:
         radii = float(value["radiusX"]) * across, float(value["radiusY"]) * down
-        return model.ellipse((x, y), radii, math.radians(turn))
+        return model.ellipse((x, y), radii, math.radians(clockwise_deg))
     width, height = float(value["width"]) * across, float(value["height"]) * down
-    return _turned(model.rectangle((x, y), (x + width, y + height)), turn, (x, y))
+    corner = np.array([x, y])
+    box = model.rectangle(corner, (x + width, y + height))
+    return turn(box - corner, clockwise_deg) + corner
 
 
 # VGG Image Annotator
@@ -594,7 +592,7 @@ def read_via(content: Mapping[str, Any], settings: ReadSettings) -> OutlineFile:
             regions = image["regions"]
             shapes = list(regions.values()) if isinstance(regions, Mapping) else list(regions)
             pictures.append(Pictured(str(image.get("filename", key)), None, shapes, str(key)))
-    found = Gathered(settings)
+    found = Gathered(settings.max_px)
     for number, region in enumerate(chosen(pictures, settings.image).shapes):
         where = f"region {number} (from 0)"
         with entry(where):
@@ -626,11 +624,6 @@ def _of_via(shape: Mapping[str, Any]) -> Any:
 # CVAT
 
 
-def is_cvat(data: bytes) -> bool:
-    """Tell CVAT's own XML by its root element."""
-    return b"<annotations" in data[:4096]
-
-
 def read_cvat(data: bytes, settings: ReadSettings) -> OutlineFile:
     """Read polygons, boxes, ellipses and masks of CVAT for images."""
     root = model.xml_root(data, "XML", "Export the annotations of one image.")
@@ -639,7 +632,7 @@ def read_cvat(data: bytes, settings: ReadSettings) -> OutlineFile:
         for image in root.iter("image"):
             size, own = model.size_px(image.get("width"), image.get("height")), image.get("id", "")
             pictures.append(Pictured(image.get("name", ""), size, list(image), own))
-    picture, found = chosen(pictures, settings.image), Gathered(settings)
+    picture, found = chosen(pictures, settings.image), Gathered(settings.max_px)
     for number, shape in enumerate(picture.shapes):
         where, label = f"shape {number} (from 0)", shape.get("label", "")
         with entry(where):
@@ -653,15 +646,15 @@ def read_cvat(data: bytes, settings: ReadSettings) -> OutlineFile:
 
 
 def _of_cvat(shape: ET.Element) -> Any:
-    turn = float(shape.get("rotation", 0.0))
+    clockwise_deg = float(shape.get("rotation", 0.0))
     if shape.tag == "polygon":
         return [tuple(map(float, p.split(","))) for p in shape.attrib["points"].split(";")]
     names = ("xtl", "ytl", "xbr", "ybr") if shape.tag == "box" else ("cx", "cy", "rx", "ry")
     one, two, three, four = (float(shape.attrib[name]) for name in names)
     if shape.tag == "ellipse":
-        return model.ellipse((one, two), (three, four), math.radians(turn))
+        return model.ellipse((one, two), (three, four), math.radians(clockwise_deg))
     middle = (one + three) / 2.0, (two + four) / 2.0
-    return _turned(model.rectangle((one, two), (three, four)), turn, middle)
+    return turn(model.rectangle((one, two), (three, four)) - middle, clockwise_deg) + middle
 
 
 def _mask_of_cvat(shape: ET.Element, room: Room) -> PlacedMask | None:
@@ -680,14 +673,9 @@ def _mask_of_cvat(shape: ET.Element, room: Room) -> PlacedMask | None:
 # YOLO
 
 
-def is_yolo(data: bytes) -> bool:
-    """Tell lines of a class and coordinates."""
-    return _YOLO.match(data) is not None
-
-
 def read_yolo(data: bytes, settings: ReadSettings) -> OutlineFile:
     """Read segments of YOLO: a class and the corners, as shares of the picture, in a line."""
-    found = Gathered(settings)
+    found = Gathered(settings.max_px)
     for number, line in enumerate(data.decode("utf-8", "replace").splitlines(), start=1):
         where = f"line {number}"
         with entry(where):

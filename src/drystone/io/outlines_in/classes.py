@@ -12,7 +12,6 @@ from drystone.io.files import MANY, listed, short, unfit
 from drystone.io.outlines_in import model
 from drystone.io.outlines_in.model import Area, OutlinedStone, OutlineFile, Room
 from drystone.io.patches import PlacedMask
-from drystone.io.read_settings import ReadSettings
 
 Drawn = Iterable[Sequence[Any]] | PlacedMask | None
 """Polygons, an outer ring and its holes each, or a mask, which is None without any pixel."""
@@ -46,8 +45,8 @@ def chosen(pictures: Sequence[Pictured], asked: str) -> Pictured:
 class Gathered:
     """Stones so far, what is none, and what has too few points to be an outline."""
 
-    def __init__(self, settings: ReadSettings | None = None) -> None:
-        self.room = Room(int((settings or ReadSettings()).max_image_mpx * 1e6))
+    def __init__(self, max_px: int) -> None:
+        self.room = Room(max_px)
         self.stones: list[OutlinedStone] = []
         self.aside = Counter[str]()
         self._slivers: list[str] = []

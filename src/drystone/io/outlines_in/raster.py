@@ -93,9 +93,8 @@ def rastered(
         px_per_m, notice = _usual_scale(file, file.unit_m)
         notices.append(notice)
     stones, (width, height) = _in_picture(file, px_per_m)
-    max_px = int(settings.max_image_mpx * 1e6)
-    check_size(width, height, max_px, _TOO_FAR)
-    model.check_reach(stones, max_px)
+    check_size(width, height, settings.max_px, _TOO_FAR)
+    model.check_reach(stones, settings.max_px)
     places = [model.pixels_of(stone) for stone in stones]
     left = {} if file.seen_by == "none" else _not_stones(file, places, (width, height), settings)
     if left:

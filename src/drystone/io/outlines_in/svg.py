@@ -543,11 +543,6 @@ class _Shape:
     kind: str
 
 
-def is_svg(data: bytes, suffix: str) -> bool:
-    """Tell SVG by its root element or by its ending."""
-    return suffix == ".svg" or b"<svg" in data[:4096] or b":svg" in data[:4096]
-
-
 def read_svg(data: bytes, settings: ReadSettings) -> OutlineFile:
     """Read every closed shape that is drawn as a stone; subpaths of one path are its holes.
 
