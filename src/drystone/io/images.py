@@ -143,14 +143,11 @@ def _alpha_of(values: NDArray[Any], clear: Any) -> NDArray[Any] | None:
         table = np.full(256, 255, np.uint8)
         table[: len(clear)] = np.frombuffer(clear[:256], np.uint8)
         return table[values.astype(np.uint8)]
-    parts = clear if isinstance(clear, tuple) else (clear,)
-    planes = np.moveaxis(np.atleast_3d(values), -1, 0)
-    if len(planes) != len(parts):
+    colours = np.atleast_3d(values)
+    colour = np.atleast_1d(clear).astype(bool if values.dtype == bool else np.int64)
+    if colours.shape[2] != len(colour):
         return None
-    seen = np.zeros(values.shape[:2], bool)
-    for plane, part in zip(planes, parts, strict=True):
-        seen |= plane != (bool(part) if values.dtype == bool else part)
-    return seen.view(np.uint8) * np.uint8(255)
+    return (colours != colour).any(axis=2).view(np.uint8) * np.uint8(255)
 
 
 def _read_tiff(data: bytes, max_px: int) -> Picture:

@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 
 from drystone.contacts.blocks import pieces_apart
 from drystone.contacts.given import polygons_from_json, read_mu
@@ -316,15 +315,11 @@ def _seen(labels: Labels) -> dict[int, tuple[tuple[float, float], float]]:
     ids, which = np.unique(runs.labels, return_inverse=True)
     lengths = runs.lengths.astype(float)
     middle, row = (runs.begins + runs.ends) / 2, labels.shape[0] - runs.rows - 0.5
-
-    def sums(values: NDArray[np.float64]) -> NDArray[np.float64]:
-        return np.bincount(which, values * lengths, minlength=ids.size).astype(float)
-
-    area = sums(np.ones(which.size))
-    x, y = sums(middle) / area, sums(row) / area
+    area = np.bincount(which, lengths)
+    x, y = (np.bincount(which, at * lengths) / area for at in (middle, row))
     # About the centroids, so that nothing is lost far from the origin; 1/12 is a pixel's own.
-    spread = sums((middle - x[which]) ** 2 + lengths**2 / 12 + (row - y[which]) ** 2 + 1 / 12)
-    allowed = IMAGE_PX + RIM * spread / area**2
+    away = (middle - x[which]) ** 2 + lengths**2 / 12 + (row - y[which]) ** 2 + 1 / 12
+    allowed = IMAGE_PX + RIM * np.bincount(which, away * lengths) / area**2
     places = zip(x.tolist(), y.tolist(), strict=True)
     return dict(zip(ids.tolist(), zip(places, allowed.tolist(), strict=True), strict=True))
 

@@ -1,11 +1,13 @@
 """The one rule for what is not a stone: frames, the ground, repeats, groups and parts."""
 
 import math
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from collections.abc import Set as AbstractSet
+from typing import Any
 
 import numpy as np
 import shapely
+from numpy.typing import NDArray
 from scipy import ndimage
 
 from drystone.errors import Notice
@@ -33,20 +35,29 @@ _MOST_PAIRS = 100_000
 _MOST_SHARED_PX = 300_000_000
 
 
+def meeting(
+    shapes: NDArray[Any], predicate: str | None = None
+) -> Iterator[tuple[NDArray[np.int64], NDArray[np.int64]]]:
+    """Yield which shapes meet which, by their positions, those of a few shapes at a time.
+
+    They may be too many to be held at once.  Without a predicate boxes count.
+    """
+    tree = shapely.STRtree(shapes)
+    for begin in range(0, len(shapes), _AT_ONCE):
+        i, j = tree.query(shapes[begin : begin + _AT_ONCE], predicate=predicate)
+        yield i + begin, j
+
+
 def meeting_boxes(masks: Sequence[PlacedMask]) -> list[tuple[int, int]]:
     """Return the pairs (i, j), i < j, of masks whose boxes overlap.
 
     More of them, or larger ones, than can be compared are refused (E110).
     """
     sides = np.array([mask.sides for mask in masks], dtype=np.int64).reshape(-1, 4)
-    boxes = shapely.box(*sides.T)
-    tree = shapely.STRtree(boxes)
     pairs: list[tuple[int, int]] = []
     shared_px = 0
-    for begin in range(0, len(boxes), _AT_ONCE):
-        i, j = tree.query(boxes[begin : begin + _AT_ONCE])
-        i += begin
-        i, j = i[i < j], j[i < j]
+    for one, other in meeting(shapely.box(*sides.T)):
+        i, j = one[one < other], other[one < other]
         shared = np.minimum(sides[i, 2:], sides[j, 2:]) - np.maximum(sides[i, :2], sides[j, :2])
         meet = (shared > 0).all(axis=1)
         pairs += zip(i[meet].tolist(), j[meet].tolist(), strict=True)

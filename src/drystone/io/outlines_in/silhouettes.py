@@ -9,14 +9,13 @@ import shapely
 from numpy.typing import NDArray
 
 from drystone.io.outlines_in.model import Area
-from drystone.io.outlines_in.nested import frames
+from drystone.io.outlines_in.nested import frames, meeting
 from drystone.io.read_settings import Up
 from drystone.kernels.polygons import Points
 
 _MOST_CROSSINGS = 2000
 _MOST_PAIRS = 200_000
 _MOST_TURNS = 20_000_000
-_AT_ONCE = 256
 
 
 def areas_of(shape: Any) -> tuple[Area, ...]:
@@ -36,27 +35,25 @@ def with_holes(rings: Sequence[Points]) -> list[tuple[int, Area]]:
     or rings in each other, to find out.
     """
     shapes = _valid(np.array([shapely.Polygon(ring) for ring in rings], dtype=object))
-    tree = shapely.STRtree(shapes)
     size = shapely.area(shapes)
     inside: dict[int, set[int]] = {i: set() for i in range(len(rings))}
     count = 0
-    for begin in range(0, len(shapes), _AT_ONCE):
-        pairs = tree.query(shapes[begin : begin + _AT_ONCE], predicate="covered_by")
-        count += pairs.shape[1]
+    for within, outer in meeting(shapes, "covered_by"):
+        count += len(within)
         if count > _MOST_PAIRS:
             raise ValueError("outlines lie in each other too often")
-        for i, j in zip((pairs[0] + begin).tolist(), pairs[1].tolist(), strict=True):
-            if i != j and size[i] < size[j]:
-                inside[j].add(i)
+        smaller = size[within] < size[outer]
+        for i, j in zip(within[smaller].tolist(), outer[smaller].tolist(), strict=True):
+            inside[j].add(i)
     framed = frames(dict(enumerate(size.tolist())), inside)
     around: dict[int, list[int]] = {i: [] for i in inside}
-    for j, found in inside.items():
-        for i in found if j not in framed else ():
+    for j, held in inside.items():
+        for i in held if j not in framed else ():
             around[i].append(j)
     holes: dict[int, list[int]] = {i: [] for i, found in around.items() if len(found) % 2 == 0}
-    for i, outer in around.items():
+    for i, found in around.items():
         if i not in holes:
-            holes[min(outer, key=lambda j: (size[j], j))].append(i)
+            holes[min(found, key=lambda j: (size[j], j))].append(i)
     return [(i, Area((rings[i], *(rings[j] for j in of)))) for i, of in holes.items()]
 
 
@@ -137,13 +134,10 @@ def _valid(shapes: NDArray[Any]) -> NDArray[Any]:
 
 def _crossings(ends: NDArray[np.float64], most: int) -> int:
     """Count how often edges of closed rings meet that are no neighbours, up to some number."""
-    edges = shapely.linestrings(ends)
-    tree, found = shapely.STRtree(edges), 0
-    for begin in range(0, len(edges), _AT_ONCE):
-        # Each meets itself and its two neighbours.
-        some = edges[begin : begin + _AT_ONCE]
-        found += tree.query(some, predicate="intersects").shape[1] - 3 * len(some)
-        if found > 2 * most:
+    found = -3 * len(ends)  # each meets itself and its two neighbours
+    for some, _ in meeting(shapely.linestrings(ends), "intersects"):
+        found += len(some)
+        if found > 2 * most + 1:
             break
     return found // 2
 
@@ -208,7 +202,10 @@ def plane_of(rings: Sequence[Vector]) -> tuple[Vector, NDArray[np.float64]]:
     That is the cosine of the angle between each and the plane.  Where most do not lie in one
     plane, the normal is the nearest axis.
     """
-    vectors = np.array([_area(ring) for ring in rings]).reshape(-1, 3)
+    # Normals that are as long as the areas are large.
+    moved = [ring - ring[0] for ring in rings]
+    areas = [np.cross(ring, np.roll(ring, -1, axis=0)).sum(axis=0) / 2.0 for ring in moved]
+    vectors = np.array(areas).reshape(-1, 3)
     sizes = np.linalg.norm(vectors, axis=1)
     if not sizes.sum() > 0.0:
         return _AXES[2], np.ones(len(rings))
@@ -225,17 +222,9 @@ def plane_of(rings: Sequence[Vector]) -> tuple[Vector, NDArray[np.float64]]:
     return normal, np.where(leaning > _FLAT, 1.0, leaning)
 
 
-def _area(ring: Vector) -> Vector:
-    """Return the normal of a ring, as long as its area is large."""
-    there = ring - ring[0]
-    return np.asarray(np.cross(there, np.roll(there, -1, axis=0)).sum(axis=0) / 2.0)
-
-
 def _word(vector: Vector) -> str:
     """Name an axis, or a direction by its numbers."""
-    for axis, name in zip(_AXES, "XYZ", strict=True):
+    for axis, name in zip((*_AXES, *-_AXES), ("X", "Y", "Z", "-X", "-Y", "-Z"), strict=True):
         if np.abs(vector - axis).max() < 1e-6:
             return name
-        if np.abs(vector + axis).max() < 1e-6:
-            return f"-{name}"
     return f"({', '.join(f'{number:.2f}' for number in vector)})"
