@@ -23,6 +23,7 @@ from drystone.io.photo_beside import (
 )
 from drystone.io.read_stones import ReadSettings, read_stones
 from drystone.io.walls import read_wall
+from tests.io.labelled import labelme
 from tests.io.pictures import areas, said, two_stones
 
 
@@ -180,13 +181,10 @@ WALL = {
 
 
 def page(tmp_path, shapes=WALL, **own):
-    shapes = [
-        {"label": str(i), "points": list(shape.exterior.coords)[:-1], "shape_type": "polygon"}
-        for i, shape in shapes.items()
-    ]
-    size = {"imagePath": "photo.jpg", "imageWidth": WIDE, "imageHeight": HIGH}
+    content = labelme((str(i), list(one.exterior.coords)[:-1]) for i, one in shapes.items())
+    content |= {"imagePath": "photo.jpg", "imageWidth": WIDE, "imageHeight": HIGH, "drystone": own}
     path = tmp_path / "outlines.json"
-    path.write_text(json.dumps({"shapes": shapes, **size, "drystone": own}))
+    path.write_text(json.dumps(content))
     return path
 
 

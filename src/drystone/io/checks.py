@@ -1,16 +1,14 @@
 """Pictures that are no label images are told apart and refused (users' table of bad input)."""
 
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from drystone.errors import InputError, LabelImageError, Notice
+from drystone.errors import LabelImageError, Notice
 from drystone.io.files import listed
-from drystone.io.json_text import json_in
 from drystone.io.labels import Census, IdImage
 from drystone.kernels.ids import counted
 from drystone.kernels.label_runs import label_runs, runs_in_pieces
@@ -28,17 +26,6 @@ scaled or blurred, .00 before; .13 in touching stones that are 5 px wide.  A sto
 refused without reason has no cure, so the limit keeps clear of those."""
 
 _CLEAN_EXPORT = "Export the ids as PNG or TIFF, without anti-aliasing or resampling."
-
-
-def check_no_plan(folder: Path) -> None:
-    """Refuse the folder of a plan (E113), whose pictures are no masks of stones."""
-    try:
-        content = json_in(folder / "plan.json")
-    except (OSError, ValueError):
-        return
-    if isinstance(content, dict) and "steps" in content and "source" in content:
-        cure = "Give the stones, or use it with --from."
-        raise InputError("E113", "this folder is a plan, made of stones already.", cure=cure)
 
 
 def check_not_uniform(image: IdImage) -> None:

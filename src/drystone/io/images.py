@@ -147,7 +147,7 @@ def _alpha_of(values: NDArray[Any], clear: Any) -> NDArray[Any] | None:
     colour = np.atleast_1d(clear).astype(bool if values.dtype == bool else np.int64)
     if colours.shape[2] != len(colour):
         return None
-    return (colours != colour).any(axis=2).view(np.uint8) * np.uint8(255)
+    return np.asarray((colours != colour).any(axis=2).view(np.uint8) * np.uint8(255))
 
 
 def _read_tiff(data: bytes, max_px: int) -> Picture:

@@ -170,7 +170,6 @@ def _cache() -> Path | None:
 
 
 def _by_hand(url: str, path: Path) -> str:
-    """Say how to do without a download."""
     return (
         f"By hand: save {url} as {path}. Or name a folder that has {path.parent.name}/{path.name} "
         f"with {VARIABLE}."
@@ -178,7 +177,6 @@ def _by_hand(url: str, path: Path) -> str:
 
 
 def _other_contents(path: Path, cure: str, url: str) -> InputError:
-    """Return the error for a file that is not the published one."""
     what = "has other contents than the published file (SHA-256)."
     return InputError("E160", what, where=str(path), cure=f"{cure} save {url} there.")
 

@@ -5,6 +5,7 @@ import json
 import math
 import re
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 from pathlib import Path, PurePath
@@ -17,7 +18,7 @@ from drystone.errors import InputError, LabelImageError, Notice
 from drystone.io import checks, masks
 from drystone.io.files import foreign, given_bytes, listed, naming, short, too_large, unfit
 from drystone.io.images import BEGINNING, FORMATS, SUFFIXES, Picture, decode, format_of
-from drystone.io.json_text import json_of
+from drystone.io.json_text import json_in, json_of
 from drystone.io.labels import Census, IdImage, check_no_zero, to_ids
 from drystone.io.outlines_in import annotations
 from drystone.io.outlines_in.classes import of_classes
@@ -194,7 +195,11 @@ def _checked(
 
 def _read_folder(folder: Path, name: str, settings: ReadSettings) -> StoneSet:
     """Read one-stone masks, numbered from 1 in natural file order."""
-    checks.check_no_plan(folder)
+    content = None
+    with suppress(OSError, ValueError):
+        content = json_in(folder / "plan.json")
+    if _is_plan(content):
+        raise InputError("E113", "this folder is a plan, made of stones already.", cure=_OF_PLAN)
     entries = [entry for entry in folder.iterdir() if not entry.name.startswith(".")]
     files = [entry for entry in entries if entry.is_file() and entry.suffix.lower() in SUFFIXES]
     if not files:
@@ -277,6 +282,13 @@ _EXPECTED = (
 )
 
 
+_OF_PLAN = "Give the stones, or use it with --from."
+
+
+def _is_plan(content: Any) -> bool:
+    return isinstance(content, Mapping) and content.keys() >= {"steps", "source"}
+
+
 def _holds(key: str) -> Callable[[Any], bool]:
     """Return what tells a table with a list of that name."""
     return lambda content: isinstance(content, Mapping) and isinstance(content.get(key), list)
@@ -338,8 +350,8 @@ def _what_else(content: Any) -> tuple[str, ...]:
         return ("has none of the known forms",)
     if content.get("schema") == SCHEMA:
         return f"stands beside the label image {LABELS}", f"Give {LABELS}, or their folder."
-    if "steps" in content and "source" in content:
-        return "is a plan, made of stones already", "Give the stones, or use it with --from."
+    if _is_plan(content):
+        return "is a plan, made of stones already", _OF_PLAN
     if "blocks" in content or "blocks_xywh" in content:
         return "is a block model of a wall", "Give the stones; `drystone analyse` reads it."
     keys = listed(short(repr(key)) for key in content) or "nothing"

@@ -225,7 +225,6 @@ def _picture_of(content: Mapping[str, Any], asked: str) -> Pictured:
 
 
 def _size_of(value: Mapping[str, Any]) -> tuple[int, int]:
-    """Return width and height of run lengths."""
     height, width = (int(side) for side in value["size"])
     if min(height, width) < 1 or height * width > _MOST_PX_OF_MASK:
         raise ValueError(f"a picture of {width} x {height} px")

@@ -41,10 +41,6 @@ _CLOSED = 1e-6
 """How far the ends of a closed spline may be apart, as a share of its size."""
 _FLATNESS = 2e-4
 """How far chords may stay away from a curve, as a share of the size of the outline."""
-_MOST_CORNERS = 10_000_000
-_DEEPEST = 64
-_MOST_ENTITIES = 100_000
-"""Entities and block references, those in rows and columns, and in blocks, one by one."""
 _MOST_DEGREE = 32
 
 
@@ -81,15 +77,14 @@ def read_dxf(data: bytes, settings: ReadSettings) -> OutlineFile:
     if named:
         aside["entities outside the layer STONES"] = len(shown) - len(named)
     outlines = []
-    room = _MOST_CORNERS
+    room = model.MOST_CORNERS
     for drawn in named or shown:
         outline = _outline(drawn, aside)
         if outline is None:
             continue
         room -= len(outline.corners)
         if room < 0:
-            what = f"the drawing has more than {_MOST_CORNERS} corners, those on curves."
-            raise too_large(what, "Export the outlines of stones only, with fewer corners.")
+            raise too_large(model.TOO_MANY_CORNERS, model.FEWER)
         outlines.append(outline)
     with foreign(lambda why: unusable(f"its outlines cannot be used ({why})")):
         outlines, rings, seen = _in_plane(outlines, aside, settings)
@@ -210,8 +205,12 @@ def _outline(drawn: Drawn, aside: Counter[str]) -> _Outline | None:
         if kind != "SPLINE" and not (kind == "POLYLINE" and entity.is_3d_polyline):
             front = drawn.matrix.transform_direction(entity.dxf.get("extrusion", (0, 0, 1)))
             facing = np.array(front.xyz)
+    name = "" if drawn.layer.upper() in {"0", _LAYER} else drawn.layer
     with foreign(lambda why: unusable(f"the name of an outline cannot be used ({why})")):
-        return _Outline(corners, facing, _name(drawn), handle, is_open)
+        if entity.has_xdata(_APPLICATION):  # what drystone wrote
+            said = [str(value) for code, value in entity.get_xdata(_APPLICATION) if code == 1000]
+            name = said[0] if said else ""
+    return _Outline(corners, facing, name, handle, is_open)
 
 
 def _path_corners(drawn: Drawn) -> tuple[Vector | None, bool]:
@@ -294,15 +293,6 @@ def spline(control: Any, knots: Any, weights: Any, degree: int) -> Vector:
     return np.asarray(found[:, :-1] / found[:, -1:])
 
 
-def _name(drawn: Drawn) -> str:
-    """Return what drystone wrote to the outline of a stone, else the layer."""
-    entity = drawn.entity
-    if entity.has_xdata(_APPLICATION):
-        said = [str(value) for code, value in entity.get_xdata(_APPLICATION) if code == 1000]
-        return said[0] if said else ""
-    return "" if drawn.layer.upper() in {"0", _LAYER} else drawn.layer
-
-
 class _Blocks:
     """All that the model space shows; what is hidden or missing is counted.
 
@@ -350,8 +340,9 @@ class _Blocks:
             yield from self.drawn(entities, one.matrix44() @ matrix, layer, depth)
 
     def _count(self, number: int, depth: int) -> None:
+        # Those in rows and columns, and in blocks, one by one.
         self.count += number
-        if self.count > _MOST_ENTITIES or depth > _DEEPEST:
+        if self.count > model.MOST_DRAWN or depth > model.DEEPEST:
             raise unusable("blocks are in each other too often or too deeply")
 
     def _is_hidden(self, entity: Any, layer: str) -> bool:

@@ -26,6 +26,14 @@ MOST_PX = 10**9
 """No coordinate is further away."""
 _CORNERS_OF_ELLIPSE = 256
 _MOST_ELEMENTS = 1_000_000
+
+DEEPEST = 64
+"""How often what is drawn may be in another group, block or use."""
+MOST_DRAWN = 100_000
+MOST_CORNERS = 10_000_000
+TOO_MANY_CORNERS = f"the drawing has more than {MOST_CORNERS} corners, those on curves."
+FEWER = "Export the outlines of stones only, with fewer corners."
+
 _STONE_NAME = re.compile(r"(?:stones?[ _-]*)?0*([1-9][0-9]*)", re.IGNORECASE)
 _WEDGE_NAME = re.compile(r"wedge[ _-]*[0-9]+", re.IGNORECASE)
 

@@ -184,7 +184,6 @@ class _Shares:
         self.left: dict[int, str] = {}
 
     def leave(self, out: Mapping[int, str]) -> None:
-        """Forget masks that are no stones."""
         self.left |= out
         for i in out:
             del self._masks[i]

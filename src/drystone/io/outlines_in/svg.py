@@ -117,7 +117,6 @@ class _Pen:
     last: str = ""  # command
 
     def draw(self, command: str, numbers: list[float]) -> None:
-        """Follow one command."""
         kind = command.upper()
         if not self.last and kind != "M":
             raise ValueError(f"path data begins with {command}, not with a move")
@@ -158,7 +157,6 @@ class _Pen:
         self.at = points[-1]
 
     def end(self, *, closed: bool) -> None:
-        """End a line."""
         if self.line:
             points = np.concatenate(self.line)
             returns = bool(np.allclose(points[0], points[-1], rtol=0.0, atol=1e-9))
@@ -496,17 +494,13 @@ _XLINK = "{http://www.w3.org/1999/xlink}href"
 _SHEET = b"<?xml-stylesheet"
 _LAYER = "stones"
 _UNSEEN = "elements that are hidden"
-_DEEPEST = 64
-_MOST = 100_000
-_MOST_CORNERS = 10_000_000
 _MOST_TEXT = 2_000_000
 """Of attributes of what is drawn, beside two times what the file has: a use draws things again."""
 _MOST_CLIPPED = 300_000
 """Corners of the shapes that are cut, and of their clip paths each time."""
 _TEXT = "the drawing has long paths that are used too often."
-_CORNERS = f"the drawing has more than {_MOST_CORNERS} corners, those on curves."
 _CLIPPED = f"its clip paths cut more than {_MOST_CLIPPED} corners."
-_FEWER = "Export the outlines of stones only, with fewer corners."
+
 _LINK = re.compile(r"""url\(\s*+(["']?)#([^"')\s]++)\1\s*+\)""")
 _RELEASE = "Apply or release it where it was drawn"
 _OUTSIDE = "outside of their clip paths, left out"
@@ -551,7 +545,7 @@ def read_svg(data: bytes, settings: ReadSettings) -> OutlineFile:
     are left aside; drawings in the drawing are refused.  A width in mm (cm, in, pt …) makes it a
     drawing to scale; otherwise its unit is px, or what the settings say.
     """
-    root = model.xml_root(data, "drawing", _FEWER)
+    root = model.xml_root(data, "drawing", model.FEWER)
     if tag(root) != "svg":
         raise unusable(f"its root element is {tag(root)[:40]}, not svg")
     with entry("the element svg"):
@@ -583,15 +577,14 @@ def read_svg(data: bytes, settings: ReadSettings) -> OutlineFile:
 
 
 class _Walk:
-    """Through all that is drawn."""
-
     def __init__(self, root: ET.Element, view: View | None, most_text: int) -> None:
         self.root, self.view = root, view
         self.styles = Styles(root)
         self.aside: Counter[str] = Counter()
         self.known = {e.get("id"): e for e in root.iter() if e.get("id")}
         self.count = 0
-        self.left = {_TEXT: most_text, _CORNERS: _MOST_CORNERS, _CLIPPED: _MOST_CLIPPED}
+        self.left = {_TEXT: most_text, _CLIPPED: _MOST_CLIPPED}
+        self.left[model.TOO_MANY_CORNERS] = model.MOST_CORNERS
         self.regions: dict[tuple[str, bytes], Any] = {}
         self.clipped: dict[str, dict[str, None]] = {_OUTSIDE: {}, _CUT: {}, _MISSING: {}}
 
@@ -610,7 +603,7 @@ class _Walk:
         if kind in _HIDDEN and not inner:
             return
         self.count += 1
-        if self.count > _MOST or place.depth > _DEEPEST:
+        if self.count > model.MOST_DRAWN or place.depth > model.DEEPEST:
             raise unusable("elements use each other too often or too deeply")
         self._spend(_TEXT, sum(map(len, element.attrib.values())))
         what = f"the {kind} {name!r}" if name else f"a {kind}"
@@ -674,7 +667,7 @@ class _Walk:
 
     def _region(self, clip: ET.Element, matrix: Matrix, depth: int) -> Any:
         """Return what a clip path leaves; of what else it holds nothing is said."""
-        if depth > _DEEPEST:
+        if depth > model.DEEPEST:
             raise unusable("clip paths use each other too often or too deeply")
         aside = self.aside.copy()
         here = _Place(matrix, depth=depth, clipping=True)
@@ -710,7 +703,7 @@ class _Walk:
         self.left[what] -= number
         if self.left[what] < 0:
             release = f"{_RELEASE}, or export the outlines of stones only."
-            raise too_large(what, release if what == _CLIPPED else _FEWER)
+            raise too_large(what, release if what == _CLIPPED else model.FEWER)
 
     def _within(self, element: ET.Element, place: _Place, style: Mapping[str, str]) -> _Place:
         turn = transform(element.get("transform", ""))
@@ -750,7 +743,7 @@ class _Walk:
         closed = [one.points for one in lines if (one.closed or filled) and len(one.points) > 2]
         if len(closed) < len(lines):
             self.aside[f"open lines in {kind}"] += len(lines) - len(closed)
-        self._spend(_CORNERS, sum(map(len, closed)))
+        self._spend(model.TOO_MANY_CORNERS, sum(map(len, closed)))
         rings = tuple(model.within_reach(moved(place.matrix, points)) for points in closed)
         if not rings:
             return
