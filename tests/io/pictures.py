@@ -5,6 +5,7 @@ import struct
 import zlib
 
 import numpy as np
+from fuzz.containers import write_png
 from PIL import Image
 
 
@@ -57,9 +58,6 @@ def save_mask(path, mask):
 def png_of(width, height, depth, colour_type, lines, palette=b""):
     """A PNG of packed lines, each with its filter before it; there may be fewer than it says."""
     header = struct.pack(">IIBBBBB", width, height, depth, colour_type, 0, 0, 0)
-    chunks = {b"IHDR": header, b"PLTE": palette, b"IDAT": zlib.compress(lines), b"IEND": b""}
-    return b"\x89PNG\r\n\x1a\n" + b"".join(
-        struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-        for kind, data in chunks.items()
-        if data or kind != b"PLTE"
-    )
+    colours = [(b"PLTE", palette)] if palette else []
+    rows = (b"IDAT", zlib.compress(lines))
+    return write_png([(b"IHDR", header), *colours, rows, (b"IEND", b"")])

@@ -27,7 +27,6 @@ from drystone.model.wall import Wall
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import GROUND
 from tests.planner.scenes import bricks, greedy, rubble
-
 from tests.verify.exact_examples import SETTINGS, exact_example
 from tests.verify.examples import example
 
@@ -103,7 +102,6 @@ def test_equal_plans_give_equal_bytes(tmp_path):
     assert "größte".encode() in texts[0]
     zero, minus = (plan(steps=(stone_step(angle_deg=value),)) for value in (0.0, -0.0))
     assert json.dumps(plan_to_json(zero)) == json.dumps(plan_to_json(minus))
-
 
 
 def test_failed_write_leaves_the_old_plan(tmp_path):

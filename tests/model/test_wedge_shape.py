@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from drystone.kernels.polygons import no_polygons
 from drystone.model.wedge_shape import WedgeRule, WedgeSettings, WedgeShape, open_sides
 from tests.naive.wedge_shape import covered, measures
-from tests.polygons import simple_polygons
+from tests.polygons import box, simple_polygons
 from tests.settle.piles import moved
 from tests.strategies import repeatable
 
@@ -91,8 +91,7 @@ def test_beside_a_wedge_is_what_fills_half_of_its_rows_up_to_the_end():
     wedge = quad((0, 4), (0, 4))
 
     def opened(*boxes):
-        beside = [np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]]) for x0, y0, x1, y1 in boxes]
-        return open_sides(wedge, no_polygons().added([wedge, *beside]))
+        return open_sides(wedge, no_polygons().added([wedge, *(box(*sides) for sides in boxes)]))
 
     assert opened() == (True, True)
     assert opened((11, -5, 12, 2)) == (True, False)

@@ -97,9 +97,7 @@ def _refuse_stones(source: Mapping[str, Any], folder: Path) -> None:
 
 def blocks_to_json(wall: Wall, model: RigidBlockModel) -> dict[str, Any]:
     """Return the block model (in source px) of a wall of outlines, in the plan's units."""
-    outlines = wall.outlines
-    if outlines is None:
-        raise ValueError("the stones of this wall are their pixels")
+    outlines = wall.exact
     px_per_m = wall.site.px_per_m or 1.0
     polygons = {
         block: (outlines.polygons.polygon(place) / px_per_m).tolist()

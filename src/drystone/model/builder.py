@@ -60,11 +60,7 @@ class BuilderErrors:
 
     def times(self, share: float) -> "BuilderErrors":
         """Return errors of a share of these."""
-        return BuilderErrors(
-            placement=share * self.placement,
-            angle_deg=share * self.angle_deg,
-            outline=share * self.outline,
-        )
+        return BuilderErrors(**{name: share * value for name, value in vars(self).items()})
 
     def all_built(self, corners: Points, numbers: Floats) -> list["Built"]:
         """Return a block as it may be, and where it is put, for one that was seen and planned.

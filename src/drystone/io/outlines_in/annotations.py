@@ -32,7 +32,6 @@ _MARKED = {"proposed": "proposals that nobody accepted", "not_used": "marked as 
 _BACK = "Open the file in outlines.html to change that."
 _OF_MODEL = ("predicted_iou", "stability_score")
 _MOST_PX_OF_MASK = 2**31
-_AT_ONCE = 64
 
 
 def read_labelme(content: Mapping[str, Any], settings: ReadSettings) -> OutlineFile:
@@ -255,11 +254,7 @@ def mask_of(value: Mapping[str, Any], room: Room) -> PlacedMask | None:
     rows = np.flatnonzero(columns.any(axis=0))
     top, bottom = int(rows[0]), int(rows[-1]) + 1
     room.take((bottom - top) * len(columns))
-    mask = np.empty((bottom - top, len(columns)), bool)
-    for begin in range(0, len(columns), _AT_ONCE):  # what a cache holds
-        some = slice(begin, begin + _AT_ONCE)
-        mask[:, some] = columns[some, top:bottom].T
-    return PlacedMask(mask, top, first)
+    return PlacedMask(np.ascontiguousarray(columns[:, top:bottom].T), top, first)
 
 
 def unpacked(text: str) -> NDArray[np.int64]:
