@@ -26,7 +26,6 @@ from drystone.io.patches import PlacedMask
 from drystone.io.photo_beside import photograph_in
 from drystone.io.read_settings import MOST_PX_PER_M, ReadSettings
 from drystone.kernels.polygons import Points
-from drystone.kernels.raster import turn
 
 _MARKED = {"proposed": "proposals that nobody accepted", "not_used": "marked as not to be used"}
 _BACK = "Open the file in outlines.html to change that."
@@ -489,6 +488,12 @@ def _text(value: Any) -> str:
     return "" if value is None else str(value)
 
 
+def _turned(corners: Any, degrees: float, about: tuple[float, float]) -> Any:
+    """Turn corners clockwise, as y runs down."""
+    sine, cosine = math.sin(math.radians(degrees)), math.cos(math.radians(degrees))
+    return (corners - about) @ np.array([[cosine, sine], [-sine, cosine]]) + about
+
+
 # Label Studio
 
 
@@ -557,14 +562,12 @@ def _of_label_studio(value: Mapping[str, Any], across: float, down: float) -> An
         points = np.array([list(map(float, point)) for point in value["points"]])
         return points * (across, down)
     x, y = float(value["x"]) * across, float(value["y"]) * down
-    clockwise_deg = float(value.get("rotation") or 0.0)
+    turn = float(value.get("rotation") or 0.0)
     if "radiusX" in value:
         radii = float(value["radiusX"]) * across, float(value["radiusY"]) * down
-        return model.ellipse((x, y), radii, math.radians(clockwise_deg))
+        return model.ellipse((x, y), radii, math.radians(turn))
     width, height = float(value["width"]) * across, float(value["height"]) * down
-    corner = np.array([x, y])
-    box = model.rectangle(corner, (x + width, y + height))
-    return turn(box - corner, clockwise_deg) + corner
+    return _turned(model.rectangle((x, y), (x + width, y + height)), turn, (x, y))
 
 
 # VGG Image Annotator
@@ -640,15 +643,15 @@ def read_cvat(data: bytes, settings: ReadSettings) -> OutlineFile:
 
 
 def _of_cvat(shape: ET.Element) -> Any:
-    clockwise_deg = float(shape.get("rotation", 0.0))
+    turn = float(shape.get("rotation", 0.0))
     if shape.tag == "polygon":
         return [tuple(map(float, p.split(","))) for p in shape.attrib["points"].split(";")]
     names = ("xtl", "ytl", "xbr", "ybr") if shape.tag == "box" else ("cx", "cy", "rx", "ry")
     one, two, three, four = (float(shape.attrib[name]) for name in names)
     if shape.tag == "ellipse":
-        return model.ellipse((one, two), (three, four), math.radians(clockwise_deg))
+        return model.ellipse((one, two), (three, four), math.radians(turn))
     middle = (one + three) / 2.0, (two + four) / 2.0
-    return turn(model.rectangle((one, two), (three, four)) - middle, clockwise_deg) + middle
+    return _turned(model.rectangle((one, two), (three, four)), turn, middle)
 
 
 def _mask_of_cvat(shape: ET.Element, room: Room) -> PlacedMask | None:

@@ -340,7 +340,7 @@ class _Blocks:
             yield from self.drawn(entities, one.matrix44() @ matrix, layer, depth)
 
     def _count(self, number: int, depth: int) -> None:
-        # Those in rows and columns, and in blocks, one by one.
+        # One by one, also those in rows and columns, and in blocks.
         self.count += number
         if self.count > model.MOST_DRAWN or depth > model.DEEPEST:
             raise unusable("blocks are in each other too often or too deeply")
