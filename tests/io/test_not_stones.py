@@ -2,10 +2,13 @@
 
 import numpy as np
 import pytest
+import shapely
 from PIL import Image, ImageDraw
 
 from drystone.errors import InputError, UsageError
 from drystone.io.outlines_in.classes import is_other
+from drystone.io.outlines_in.nested import meeting
+from drystone.io.outlines_in.silhouettes import _crossings
 from drystone.io.read_stones import ReadSettings, read_stones
 from tests.io.labelled import CLASSES, FORMS, HEIGHT, WIDTH, box, stones, written
 from tests.io.pictures import said, save_mask
@@ -197,3 +200,13 @@ def test_classes_are_for_outlines_only_and_what_is_kept_must_be_there(tmp_path):
     with pytest.raises(UsageError, match=r"E118.*no classes.*--label"):
         read_stones(one(stones()[0]), settings=ReadSettings(label=("stone",)))
     assert "no stone 99 to keep" in said(read(tmp_path, "coco", stones(), keep=(99,)))
+
+
+def test_hundreds_of_shapes_and_edges_meet_where_they_do():
+    """More than are asked for at once."""
+    left = np.arange(600)
+    pairs = np.hstack(list(meeting(shapely.box(left, 0, left + 1.5, 1))))
+    assert {(i, j) for i, j in pairs.T.tolist() if i < j} == {(k, k + 1) for k in range(599)}
+    t = np.arange(3000) * (2 * np.pi / 3000) + 0.1
+    eight = np.column_stack([np.sin(2 * t), np.sin(t)])
+    assert _crossings(np.stack([eight, np.roll(eight, -1, axis=0)], axis=1), 2000) == 1
