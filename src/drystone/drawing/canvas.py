@@ -44,6 +44,8 @@ LARGEST_PT, SMALLEST_PT, TITLE_PT = 10.0, 3.5, 9.0
 BESIDE_PT = ((10.0, 9.0), (-10.0, 9.0), (10.0, -9.0), (-10.0, -9.0))
 """Where words beside a thing may be, from its middle."""
 
+SIZE_BESIDE_PT = 6.5
+
 
 def draw(drawing: Drawing, ax: Axes | None = None) -> Axes:
     """Draw all of a drawing, on axes of its own when there are none."""
@@ -112,12 +114,10 @@ def _marker(item: Dots) -> dict[str, Any]:
 
 
 def _write(ax: Axes, words: Words) -> None:
-    size = words.size_pt
-    if words.room is not None:
-        left, right = ax.get_xlim()
-        per_unit = ax.get_window_extent().width / ax.figure.dpi * 72 / (right - left)
-        width, height = (float(side * per_unit) for side in words.room)
-        size = float(np.clip(letters_pt(words.text, width, height), SMALLEST_PT, LARGEST_PT))
+    left, right = ax.get_xlim()
+    per_unit = ax.get_window_extent().width / ax.figure.dpi * 72 / (right - left)
+    width, height = (float(side * per_unit) for side in words.room)
+    size = float(np.clip(letters_pt(words.text, width, height), SMALLEST_PT, LARGEST_PT))
     ax.text(
         *words.at, words.text, size=size, color=words.colour or text_colour(words.on), ha="center",
         va="center_baseline", zorder=words.z, gid=words.name, clip_on=True,
@@ -141,7 +141,7 @@ def _write_beside(ax: Axes, words: Words, all_words: Iterable[Words]) -> None:
     ]
     ax.annotate(
         words.text, words.at, BESIDE_PT[int(np.argmax(free))], textcoords="offset points",
-        size=words.size_pt, weight="bold", color=words.colour, ha="center", va="center",
+        size=SIZE_BESIDE_PT, weight="bold", color=words.colour, ha="center", va="center",
         zorder=words.z, gid=words.name,
         path_effects=[withStroke(linewidth=1.4, foreground=words.on)],
         arrowprops={"arrowstyle": "-", "linewidth": 0.6, "color": words.colour, "shrinkA": 3,

@@ -99,10 +99,9 @@ class Words:
     name: str
     text: str
     at: Point  # the middle
-    room: Point | None = None  # width and height of what they are on, which says how large they are
+    room: Point  # width and height of what they are on, which says how large they are
     on: str = "#ffffff"  # colour of what is below
     colour: str = ""  # instead of black or white
-    size_pt: float = 8.0  # where no room says it
     beside: bool = False  # too small to hold them: they are where there is room, with a line
     z: float = 5.0
     layer: str = "NUMBERS"
@@ -149,8 +148,8 @@ def placed(items: Iterable[Drawable], factor: float, origin: Point = (0.0, 0.0))
             moved.append(replace(item, points=there(item.points)))
         else:
             x, y = there(item.at).tolist()
-            room = item.room and (item.room[0] * factor, item.room[1] * factor)
-            moved.append(replace(item, at=(x, y), room=room))
+            wide, high = item.room
+            moved.append(replace(item, at=(x, y), room=(wide * factor, high * factor)))
     return moved
 
 
@@ -208,10 +207,7 @@ def wall_drawing(
 def drawing_of_wall(
     wall: Wall, clusters: Mapping[int, int] | None = None, title: str = ""
 ) -> Drawing:
-    """Describe a wall: stones coloured by cluster and numbered in order of placement, wedges red.
-
-    Parameters as for :func:`drystone.drawing.plot_wall`.
-    """
+    """Describe what :func:`drystone.drawing.plot_wall` draws."""
     site, units = wall.site, wall.site.units_per_px
     loops: dict[int, tuple[Loop, ...]]
     if wall.outlines is None:
@@ -266,7 +262,7 @@ def drawing_of_assembly(assembly: Assembly, title: str = "") -> Drawing:
             )  # fmt: skip
             number = Words(
                 f"number-{part.name}", str(part.step), at, area.room, colour=WEDGE_COLOUR,
-                size_pt=6.5, beside=True, z=6.0,
+                beside=True, z=6.0,
             )  # fmt: skip
         items += [area, number]
     return wall_drawing(items, assembly.size, assembly.unit, title, {})

@@ -62,7 +62,7 @@ def paint(
         elif isinstance(item, Lines):
             for line in item.lines:
                 draw.line(view.pixels(line), item.colour, width(float(np.max(item.width_pt))))
-        elif isinstance(item, Words) and item.room is not None and not item.beside:
+        elif isinstance(item, Words) and not item.beside:
             size = letters_pt(item.text, *(side * view.per_unit for side in item.room))
             chosen = font(float(np.clip(size, SMALLEST_PX, LARGEST_PX)))
             (at,) = view.pixels(item.at)

@@ -102,7 +102,7 @@ class _Sheet:
             for x, y in item.points.tolist():
                 spot = {"cx": _text(x), "cy": _text(self.height - y), "r": radius}
                 ET.SubElement(layer, "circle", {**spot, "fill": item.colour})
-        elif isinstance(item, Words) and item.room is not None and not item.beside:
+        elif isinstance(item, Words) and not item.beside:
             size = min(letters_pt(item.text, *item.room, 0.5), LARGEST_LETTER * self.width)
             place = {"x": _text(item.at[0]), "y": _text(self.height - item.at[1]),
                      "font-size": _text(size), "font-family": "sans-serif",
@@ -222,8 +222,7 @@ def _add(space: Any, item: Drawable, letter: float) -> None:
         for point in item.points.tolist():
             _tell(space.add_point(point, dxfattribs=style), item.name)
     else:
-        room = min(item.room) if item.room else letter
-        size = min(0.35 * room, 2.0 * letter)
+        size = min(0.35 * min(item.room), 2.0 * letter)
         middle = import_module("ezdxf.enums").TextEntityAlignment.MIDDLE_CENTER
         space.add_text(item.text, height=size, dxfattribs=style).set_placement(
             item.at, align=middle

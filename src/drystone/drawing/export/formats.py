@@ -49,22 +49,22 @@ class ExportSettings:
 class Format:
     """A format: its files, what they are in words, and whether it needs a scale (E131).
 
-    `made_by` names a module of this package and its function from an assembly and settings to
-    `Files`, called as the format with `_` for `-`.  In `writes` a folder ends in ``/``.
+    `module` is one of this package, with a function of the format's name from an assembly and
+    settings to `Files`.  In `writes` a folder ends in ``/``.
     """
 
-    made_by: str
+    name: str
+    module: str
     writes: tuple[str, ...]
     text: str
     metric: bool = False
 
     def files(self, assembly: "Assembly", settings: ExportSettings) -> Files:
         """Return what is to be written."""
-        module, _, function = self.made_by.partition(":")
         if self.metric:
-            assembly.require_scale(f"the format {function.replace('_', '-')!r}")
-        made = import_module(f"drystone.drawing.export.{module}")
-        files: Files = getattr(made, function)(assembly, settings)
+            assembly.require_scale(f"the format {self.name!r}")
+        made = import_module(f"drystone.drawing.export.{self.module}")
+        files: Files = getattr(made, self.name)(assembly, settings)
         return files
 
     def write(
@@ -94,34 +94,33 @@ def load_extra(module: str, extra: str, code: str, where: str) -> Any:
         raise UsageError(code, what, where=where, cure=cure) from error
 
 
-FORMATS: Mapping[str, Format] = {
-    "poses": Format("robots:poses", ("poses.json",), "pick and place poses, grasps, masses", True),
-    "compas": Format("robots:compas", ("assembly.compas.json",), "COMPAS frames and meshes", True),
-    "moveit": Format(
-        "robots:moveit", ("scene.yaml", "wall.scene"),
+_FORMATS = (
+    Format("poses", "robots", ("poses.json",), "pick and place poses, grasps, masses", True),
+    Format("compas", "robots", ("assembly.compas.json",), "COMPAS frames and meshes", True),
+    Format(
+        "moveit", "robots", ("scene.yaml", "wall.scene"),
         "collision objects for MoveIt, in order", True,
     ),
-    "urdf": Format("robots:urdf", ("urdf/",), "a URDF with mesh and inertia of every part", True),
-    "obj": Format("solids:obj", ("wall.obj", "wall.mtl"), "extruded stones, named objects", True),
-    "glb": Format("solids:glb", ("wall.glb",), "the same as glTF", True),
-    "stl": Format("solids:stl", ("stl/",), "one file a part", True),
-    "csv": Format("tables:csv", ("steps.csv",), "the build list"),
-    "parquet": Format("tables:parquet", ("steps.parquet",), "the build list"),
-    "geojson": Format("tables:geojson", ("wall.geojson",), "polygons with their steps"),
-    "dxf": Format(
-        "drawings:dxf", ("wall.dxf",), "R2010, layers STONES WEDGES CONTACTS FORCES MECHANISM"
+    Format("urdf", "robots", ("urdf/",), "a URDF with mesh and inertia of every part", True),
+    Format("obj", "solids", ("wall.obj", "wall.mtl"), "extruded stones, named objects", True),
+    Format("glb", "solids", ("wall.glb",), "the same as glTF", True),
+    Format("stl", "solids", ("stl/",), "one file a part", True),
+    Format("csv", "tables", ("steps.csv",), "the build list"),
+    Format("parquet", "tables", ("steps.parquet",), "the build list"),
+    Format("geojson", "tables", ("wall.geojson",), "polygons with their steps"),
+    Format(
+        "dxf", "drawings", ("wall.dxf",), "R2010, layers STONES WEDGES CONTACTS FORCES MECHANISM"
     ),
-    "svg": Format(
-        "drawings:svg", ("wall.svg",), "every stone defined once and placed by a transform"
+    Format(
+        "svg", "drawings", ("wall.svg",), "every stone defined once and placed by a transform"
     ),
-    "png": Format("drawings:png", ("wall-numbered.png",), "the wall with step numbers"),
-    "gif": Format("frames:gif", ("build.gif",), "the construction"),
-    "mp4": Format("frames:mp4", ("build.mp4",), "the construction"),
-    "pdf": Format(
-        "drawings:pdf", ("build-sheet.pdf",),
+    Format("png", "drawings", ("wall-numbered.png",), "the wall with step numbers"),
+    Format("gif", "frames", ("build.gif",), "the construction"),
+    Format("mp4", "frames", ("build.mp4",), "the construction"),
+    Format(
+        "pdf", "drawings", ("build-sheet.pdf",),
         "drawing to scale, every stone in order, fetch list",
     ),
-    "projector": Format(
-        "frames:projector", ("projector/",), "a frame a step, 1:1 on the wall", True
-    ),
-}  # fmt: skip
+    Format("projector", "frames", ("projector/",), "a frame a step, 1:1 on the wall", True),
+)  # fmt: skip
+FORMATS: Mapping[str, Format] = {one.name: one for one in _FORMATS}

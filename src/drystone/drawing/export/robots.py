@@ -143,11 +143,7 @@ def _posed(pose: Pose3d) -> dict[str, Any]:
 
 
 def place_approach(assembly: Assembly, part: Part) -> dict[str, Any]:
-    """Return how a part comes to its place.
-
-    A stone comes from above: it is lowered from where its lowest point is CLEARANCE_M above the
-    highest point of what was built before.  A wedge goes in from the front.
-    """
+    """Return how a part comes to its place, as `FRAMES` says of an approach."""
     pose = assembly.place_pose(part)
     if part.kind == "wedge":
         return _approach(pose, INWARD, assembly.thickness + CLEARANCE_M)

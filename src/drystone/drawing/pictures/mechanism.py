@@ -51,11 +51,7 @@ class MechanismMotion:
         return np.asarray(length / length.max()) if length.any() else length
 
     def at(self, amplitude: float) -> tuple[Region, ...]:
-        """Return all blocks after a share of the motion, 0 (rest) to 1.
-
-        Each block turns about its centre of rotation by its angle, so it keeps its size, blocks
-        that move as one stay together, and a toe stays where it is.
-        """
+        """Return all blocks after a share of the motion, 0 (rest) to 1."""
         moved = []
         for region, twist in zip(self.regions, amplitude * self.displacement, strict=True):
             loops = tuple(_moved(loop, region, twist) for loop in region.loops)
@@ -174,6 +170,7 @@ def _blocks(
 def _moved(points: Loop, region: Region, twist: Floats) -> Loop:
     """Move points of a block by a finite twist: a turn about the twist's centre of rotation.
 
+    So a block keeps its size, blocks that move as one stay together, and a toe stays where it is.
     With the angle a the centroid moves by V (x, y), V = [[sin a, cos a - 1], [1 - cos a, sin a]]
     / a, which is a translation for a = 0.
     """

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from drystone.drawing.assembly import Assembly, assembly_of_result
+from drystone.drawing.assembly import Assembly, assembly_of_result, touched_by
 from drystone.drawing.outlines import regions_box, wall_regions
 from drystone.drawing.palette import PLAIN_COLOUR, WEDGE_COLOUR, cluster_colour, text_colour
 from drystone.drawing.photo import read_photo
@@ -140,16 +140,12 @@ def view_of_wall(
                                 load_case=load_case),
         *cards,
     )  # fmt: skip
-    touching: dict[int, set[int]] = {region.id: set() for region in regions}
-    for face in model.interfaces:
-        touching.setdefault(face.block, set()).add(face.other)
-        touching.setdefault(face.other, set()).add(face.block)
     parts = [
         _part(
             region.id, "wedge" if region.id in names.wedges else "stone", region.loops,
             region.centroid, digits, number=region.id,
             size=rounded(np.ptp(np.concatenate(region.loops), axis=0), digits),
-            neighbours=sorted(touching[region.id]),
+            neighbours=touched_by(region.id, model),
         )
         for region in regions
     ]  # fmt: skip

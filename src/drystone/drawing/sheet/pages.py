@@ -554,7 +554,7 @@ class BuildSheet:
         texts = [f"{1000 * side:.0f}" if assembly.unit == "m" else f"{side:.0f}" for side in size]
         page.dimension((left, foot - 4.0), (left + shown[0], foot - 4.0), texts[0])
         page.dimension((left - 4.5, foot), (left - 4.5, foot + shown[1]), texts[1], upright=True)
-        page.write(x + 2.0, y + 2.0, words.size_words(assembly, *size), SMALL_PT)
+        page.write(x + 2.0, y + 2.0, words.size_words(assembly, wedge), SMALL_PT)
         if assembly.unit == "m":
             scale = f"{factor:g}:1" if factor > 1.0 else f"1:{1 / factor:g}"
             page.write(x + CARD_MM[0] - 2.0, y + 2.0, f"drawn {scale}", SMALL_PT, ha="right")

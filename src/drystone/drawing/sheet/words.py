@@ -37,8 +37,9 @@ def length_words(assembly: Assembly, *lengths: float) -> str:
     return ", ".join(f"{length:.0f}" for length in lengths) + " px"
 
 
-def size_words(assembly: Assembly, width: float, height: float) -> str:
-    """Write the size of a thing: whole mm for what is cut, or px."""
+def size_words(assembly: Assembly, wedge: Part) -> str:
+    """Write the size of what is cut: whole mm, or px."""
+    width, height = np.ptp(wedge.corners, axis=0).tolist()
     if assembly.unit == "m":
         return f"{1000 * width:.0f} \N{MULTIPLICATION SIGN} {1000 * height:.0f} mm"
     return f"{width:.0f} \N{MULTIPLICATION SIGN} {height:.0f} px"
@@ -102,7 +103,7 @@ def step_words(assembly: Assembly, part: Part) -> str:
         under = assembly.part(part.under or 0)
         return (
             f"Push wedge {part.id} in under the {wedge_place(assembly, part)} of stone {under.id} "
-            f"(step {under.step}): {size_words(assembly, *np.ptp(part.corners, axis=0).tolist())}."
+            f"(step {under.step}): {size_words(assembly, part)}."
         )
     across, up = (length_words(assembly, value) for value in part.centroid)
     beside = beside_words(assembly, part)
@@ -114,11 +115,8 @@ def step_words(assembly: Assembly, part: Part) -> str:
 
 def wedge_words(assembly: Assembly, wedge: Part) -> str:
     """Say where a wedge goes, and how large it is."""
-    size = np.ptp(wedge.corners, axis=0)
-    return (
-        f"wedge {wedge.step}: {size_words(assembly, *size.tolist())}, "
-        f"under its {wedge_place(assembly, wedge)}"
-    )
+    place = wedge_place(assembly, wedge)
+    return f"wedge {wedge.step}: {size_words(assembly, wedge)}, under its {place}"
 
 
 def wedge_place(assembly: Assembly, wedge: Part) -> str:

@@ -105,10 +105,7 @@ class PhysicsCard:
         return f"{fallen} of {all_} blocks fall, the first after step {self.first_fall}"
 
     def _tilted(self, name: str) -> str:
-        predicted = None
-        if self.metrics is not None:
-            predicted = self.metrics.alpha_left if name == "left" else self.metrics.alpha_right
-        said = f"limit analysis {number(predicted)}"
+        said = f"limit analysis {number(getattr(self.metrics, f'alpha_{name}', None))}"
         if self.tilts is None:
             return f"not tilted, as it does not stand at rest; {said}"
         if self.tilts[name == "right"].fell_at_rest:

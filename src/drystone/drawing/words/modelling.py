@@ -21,7 +21,7 @@ from drystone.contacts.given import model_from_json, polygons_from_json
 from drystone.contacts.outlines import model_of_traced, outlines_of_labels
 from drystone.contacts.settled import SETBACK
 from drystone.drawing.words.analysis import STONES, ModelledWall, Shapes
-from drystone.errors import InputError, Notice, UsageError
+from drystone.errors import InputError, Notice, UsageError, counted
 from drystone.io.files import listed
 from drystone.io.walls import GivenWall
 from drystone.model.stone_size import median_sides, sizes_of
@@ -75,11 +75,11 @@ def modelled(wall: GivenWall, asked: ModelRequest, where: str) -> ModelledWall:
 
 def _given(wall: GivenWall, blocks: dict[str, Any], mu: float, asked: ModelRequest) -> ModelledWall:
     if asked.close_gaps is not None or asked.contacts != "pixels":
-        what = "a block model has no pixels to take contacts from."
-        cure = "Leave --close-gaps and --contacts out."
+        what, more = "a block model has no pixels to take contacts from.", ""
         if wall.plan is not None:
             what = "this plan is one of outlines, whose contacts are known."
-            cure = "Leave --close-gaps and --contacts out, or give its wall image."
+            more = ", or give its wall image"
+        cure = f"Leave --close-gaps and --contacts out{more}."
         raise UsageError("E138", what, cure=cure)
     if asked.mu is not None:
         blocks = {**blocks, "mu": mu}
@@ -289,9 +289,8 @@ def scarcity(wall: ModelledWall, per_unit_m: float | None) -> Notice | None:
         return None
     named = listed(one.block for one in few)
     gaps = [one.gap for one in few if np.isfinite(one.gap)]
-    noun = wall.names.noun if len(few) == 1 else f"{wall.names.noun}s"
     have = "has" if len(few) == 1 else "have"
-    said = f"{len(few)} {noun} {have} fewer than two contact points: {named}."
+    said = f"{counted(len(few), wall.names.noun)} {have} fewer than two contact points: {named}."
     if not gaps:
         return Notice("W305", said)
     unit = "" if wall.joints == "known" else " px"
