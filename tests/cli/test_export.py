@@ -8,9 +8,10 @@ from xml.etree import ElementTree as ET
 import ezdxf
 import pytest
 
+import drystone as ds
 from drystone.drawing.export.formats import FORMATS
 from tests.cli.conftest import WALL, rewrite
-from tests.drawing.export.robot_plans import write_plan_folder
+from tests.drawing.plans import planned
 
 QUICK = ("poses", "compas", "moveit", "urdf", "obj", "glb", "stl", "csv", "geojson")
 """Formats that need no drawing."""
@@ -19,7 +20,8 @@ QUICK = ("poses", "compas", "moveit", "urdf", "obj", "glb", "stl", "csv", "geojs
 @pytest.fixture
 def plan(tmp_path):
     """The plan.json of a plan in px."""
-    return write_plan_folder("exact", tmp_path) / "plan.json"
+    ds.write_plan_folder(planned(), tmp_path)
+    return tmp_path / "plan.json"
 
 
 def tree(folder):

@@ -6,16 +6,11 @@ import numpy as np
 import pytest
 import shapely
 
+import drystone as ds
 from drystone.drawing.assembly import outer_loop, read_assembly
 from drystone.drawing.outlines import label_regions
 from drystone.errors import DrystoneError
-from tests.drawing.export.robot_plans import (
-    METRIC,
-    PX_PER_M,
-    assembly,
-    source_stones,
-    write_plan_folder,
-)
+from tests.drawing.plans import METRIC, PX_PER_M, assembly, planned, source_stones
 
 
 @pytest.mark.parametrize("name", METRIC)
@@ -68,8 +63,7 @@ def test_the_grip_is_the_least_width_of_any_direction_and_wedges_are_in_no_photo
 def test_folder_and_file_are_the_same_plan_of_one_scale(tmp_path):
     metric, px = tmp_path / "raster-m", tmp_path / "exact"
     for folder in (metric, px):
-        folder.mkdir()
-        write_plan_folder(folder.name, folder)
+        ds.write_plan_folder(planned(*METRIC[folder.name]), folder)
     one, other = read_assembly(px), read_assembly(px / "plan.json")
     assert one.plan == other.plan
     assert [part.name for part in one.parts] == [part.name for part in other.parts]
@@ -104,7 +98,8 @@ def test_folder_and_file_are_the_same_plan_of_one_scale(tmp_path):
     ],
 )  # fmt: skip
 def test_steps_that_nobody_can_build_by_are_refused(name, tampered, code, said, tmp_path):
-    path = write_plan_folder(name, tmp_path) / "plan.json"
+    ds.write_plan_folder(planned(*METRIC[name]), tmp_path)
+    path = tmp_path / "plan.json"
     plan = json.loads(path.read_text("utf-8"))
     plan["steps"] = tampered(plan["steps"])
     path.write_text(json.dumps(plan), "utf-8")

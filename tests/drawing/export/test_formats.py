@@ -9,7 +9,7 @@ import pytest
 
 from drystone.drawing.export.formats import FORMATS, ExportSettings
 from drystone.errors import UsageError
-from tests.drawing.export import robot_plans
+from tests.drawing import plans
 from tests.drawing.export.drawn_walls import assembly
 
 SETTINGS = ExportSettings()
@@ -56,7 +56,7 @@ PAGE = Path(__file__).resolve().parents[3] / "docs" / "for-robotics.md"
 
 
 def test_the_programs_of_the_page_run(tmp_path, monkeypatch, capsys):
-    wall = robot_plans.assembly("exact")
+    wall = plans.assembly("exact")
     for name in ("poses", "compas"):
         FORMATS[name].write(wall, tmp_path / "out", ExportSettings())
     monkeypatch.chdir(tmp_path)

@@ -12,7 +12,7 @@ from shapely import affinity
 from drystone.drawing.export import robots
 from drystone.drawing.export.formats import FORMATS, ExportSettings
 from drystone.model.plan import StoneStep
-from tests.drawing.export.robot_plans import METRIC, PX_PER_M, THICKNESS_M, assembly
+from tests.drawing.plans import METRIC, PX_PER_M, THICKNESS_M, assembly
 from tests.polygons import box_of
 
 SETTINGS = ExportSettings()

@@ -19,7 +19,7 @@ from drystone.drawing.export.formats import FORMATS, ExportSettings
 from drystone.drawing.export.solids import extruded, inertia, material, solid_of_part
 from drystone.drawing.palette import WEDGE_COLOUR, cluster_colour, rgb
 from drystone.errors import InputError
-from tests.drawing.export.robot_plans import THICKNESS_M, assembly, assert_in_place
+from tests.drawing.plans import THICKNESS_M, assembly, assert_in_place
 
 SETTINGS = ExportSettings()
 

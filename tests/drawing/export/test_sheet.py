@@ -187,7 +187,7 @@ def test_sizes_and_places_have_units():
     assert wedge_words(small, wedge).endswith(" 30 mm, under its right end")
     assert length_words(small, 0.1234, 2.0) == "12.3, 200.0 cm"
     assert length_words(px, 12.3) == "12 px"
-    assert size_words(px, 12.3, 4.0) == "12 \N{MULTIPLICATION SIGN} 4 px"
+    assert size_words(px, px.parts[1]) == "30 \N{MULTIPLICATION SIGN} 6 px"
     # The left one of two that are as low.
     assert lowest_corner(small.parts[2]) == pytest.approx((0.3, 0.0))
     assert pages.drawn_factor(small, wedge) == 1 / 5  # 150 mm x 30 mm in 44 mm x 25 mm

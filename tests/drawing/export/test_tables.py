@@ -10,7 +10,7 @@ from pyarrow import parquet
 
 from drystone.drawing.export.formats import FORMATS, ExportSettings
 from drystone.model.plan import StoneStep
-from tests.drawing.export.robot_plans import PX_PER_M, THICKNESS_M, assembly
+from tests.drawing.plans import PX_PER_M, THICKNESS_M, assembly
 
 SETTINGS = ExportSettings()
 

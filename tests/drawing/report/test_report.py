@@ -25,7 +25,7 @@ from drystone.io.wall_image import write_labels
 from drystone.model.plan import PlanMetrics
 from drystone.statics.limit import lateral_resistance
 from tests.drawing import examples
-from tests.drawing.report.walls import analysed, result, written
+from tests.drawing.plans import analysed, planned
 from tests.verify.exact_examples import exact_example
 
 ALPHA = "\N{GREEK SMALL LETTER ALPHA}"
@@ -191,20 +191,20 @@ def test_a_wall_that_was_not_planned_has_a_table_of_blocks(tmp_path, monkeypatch
 
 
 def test_the_viewer_alone_is_a_page_or_a_frame():
-    shown = view_of_result(result("paper"))
+    shown = view_of_result(planned("paper"))
     page = Page(viewer_page(shown, {"chart": False}))
     assert page.data == json.loads(json.dumps(shown))
     (frame,) = Page(Shown(shown)._repr_html_()).all("iframe")
     assert frame["srcdoc"] == viewer_page(shown)
-    frame = result("paper")._repr_html_()
+    frame = planned("paper")._repr_html_()
     assert frame.startswith('<iframe title="Dry-stone wall from ')
     assert "\n" not in frame
-    assert ds.view(result("paper"))._repr_html_() == frame
+    assert ds.view(planned("paper"))._repr_html_() == frame
 
 
 def test_viewer_and_sheet_refuse_a_photograph_alike(tmp_path):
-    folder, source = written(tmp_path), result().plan.source
-    path, unreadable = folder / "photo.jpg", "cannot be read"
+    ds.write_plan_folder(planned(), tmp_path)
+    path, source, unreadable = tmp_path / "photo.jpg", planned().plan.source, "cannot be read"
     for zoom, until, said in (
         (2, None, "something else"),
         (1, 10, unreadable),
@@ -213,7 +213,7 @@ def test_viewer_and_sheet_refuse_a_photograph_alike(tmp_path):
         Image.new("RGB", (zoom * source["width_px"], source["height_px"])).save(path)
         path.write_bytes(path.read_bytes()[:until])
         with pytest.raises(InputError, match=f"E189 .*{said}") as viewed:
-            ds.view(folder)
+            ds.view(tmp_path)
         with pytest.raises(InputError, match=f"E189 .*{said}") as printed:
-            FORMATS["pdf"].files(ds.read_assembly(folder), ExportSettings())
+            FORMATS["pdf"].files(ds.read_assembly(tmp_path), ExportSettings())
         assert str(viewed.value) == str(printed.value)

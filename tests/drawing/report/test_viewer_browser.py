@@ -14,7 +14,7 @@ from PIL import Image, ImageDraw
 from drystone.drawing import view_of_result, write_report
 from drystone.drawing.report.html import json_in_html, viewer_page, viewer_script, viewer_style
 from tests.drawing.conftest import Heard
-from tests.drawing.report.walls import analysed, result
+from tests.drawing.plans import analysed, planned
 from tests.polygons import box_of
 
 
@@ -56,7 +56,7 @@ def until(condition, seconds=10.0):
 
 @cache
 def shown(method="paper"):
-    return view_of_result(result(method))
+    return view_of_result(planned(method))
 
 
 def seen(page):
@@ -185,14 +185,14 @@ def test_a_stone_has_a_card(page):
 
 
 def test_the_photograph_lies_under_the_outline(visit, tmp_path):
-    plan = result().plan
+    plan = planned().plan
     source = plan.source["width_px"], plan.source["height_px"]
     picture = Image.new("RGB", (4 * source[0], 4 * source[1]), "#007000")
-    for part in shown("best")["parts"]:
+    for part in shown("best")["parts"][1:3]:
         corners = [(4 * x, 4 * (source[1] - y)) for x, y in part["source"]]
         ImageDraw.Draw(picture).polygon(corners, fill="#c00000")
     picture.save(tmp_path / "photo.png")
-    data = view_of_result(result(), photo=tmp_path / "photo.png")
+    data = view_of_result(planned(), photo=tmp_path / "photo.png")
     # Turns of the plan are small: one stone is said to stand turned by 70 degrees more.
     straight, turned = data["parts"][1:3]
     straight["points"] = [(np.array(straight["source"]) - straight["source"][0]).tolist()]
@@ -215,7 +215,7 @@ def check_that_outlines_hold_the_stone(figure):
     for outline in figure.locator(".ds-over").all():
         pairs = re.findall(r"(-?[\d.]+) (-?[\d.]+)", outline.get_attribute("d"))
         drawn = shapely.Polygon(np.array(pairs, float) * seen.width / wide)
-        parts += [(drawn.buffer(-6), True), (drawn.buffer(6) - drawn.buffer(3), False)]
+        parts += [(drawn.buffer(-6), True), (drawn.buffer(8) - drawn.buffer(4), False)]
     assert len(parts) == 4
     for within, red in parts:
         pixels = colours[shapely.contains_xy(within, across, down)]
@@ -511,7 +511,7 @@ def test_two_viewers_on_a_page_do_not_mix(visit):
 
 
 def test_the_frame_of_a_notebook_grows_to_its_content(visit):
-    page = visit(f"<style>p {{color: red}}</style>{result('paper')._repr_html_()}")
+    page = visit(f"<style>p {{color: red}}</style>{planned('paper')._repr_html_()}")
     frame = page.frame_locator("iframe")
     frame.get_by_label("Step of construction").fill("1")
     assert frame.locator(".ds-counter").inner_text().startswith("1 /")

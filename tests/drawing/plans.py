@@ -1,26 +1,26 @@
-"""Assemblies of small plans, for exports that are read back."""
+"""Small plans and walls, for exports that are read back and for the viewer."""
 
-import json
 import tempfile
 from dataclasses import replace
 from functools import cache
-from pathlib import Path
 
 import numpy as np
 import pytest
 import shapely
 
 import drystone as ds
+from drystone.contacts.blocks import model_from_labels
+from drystone.contacts.given import model_from_json
+from drystone.drawing import view_of_wall
 from drystone.drawing.assembly import read_assembly
 from drystone.generate import RubbleSettings, rubble_stones
-from drystone.io.plan_folder import BLOCKS, blocks_to_json
-from drystone.io.wall_image import write_wall_image
 from drystone.model.wedge_shape import WedgeSettings
 from drystone.settle.settings import SettleSettings
+from drystone.statics.limit import lateral_resistance
 
 PX_PER_M = 137.0
 
-METRIC = ("exact", "raster-m")
+METRIC = {"exact": ("best", None), "raster-m": ("paper", PX_PER_M)}
 """Both are in metres: a plan in px that is told its scale afterwards, and one that says it."""
 
 THICKNESS_M = 0.21
@@ -38,24 +38,13 @@ def assert_in_place(mesh, part, abs_m=1e-9):
 
 @cache
 def assembly(name, px_per_m=PX_PER_M):
-    """Return one of METRIC; without a scale those of plans in px are in px."""
-    told = None if name.endswith("-m") else px_per_m
-    metric = name.endswith("-m") or told is not None
+    """Read one of METRIC; without a scale that of outlines is in px."""
     with tempfile.TemporaryDirectory() as folder:
-        write_plan_folder(name, Path(folder))
+        ds.write_plan_folder(planned(*METRIC[name]), folder)
+        thickness_m = None if px_per_m is None else THICKNESS_M
         return read_assembly(
-            folder, px_per_m=told, thickness_m=THICKNESS_M if metric else None, density_kg_m3=2450.0
+            folder, px_per_m=px_per_m, thickness_m=thickness_m, density_kg_m3=2450.0
         )
-
-
-def write_plan_folder(name, folder):
-    """Write the files of a plan as `drystone plan` does, without pictures."""
-    made = planned(name)
-    ds.write_plan(made.plan, folder / "plan.json")
-    if made.wall.outlines is not None:
-        (folder / BLOCKS).write_text(json.dumps(blocks_to_json(made.wall, made.model)))
-    write_wall_image(made.wall.labels, folder)
-    return folder
 
 
 @cache
@@ -65,15 +54,25 @@ def source_stones():
     return rubble_stones(rubble, np.random.default_rng(4))
 
 
+def planned(method="best", px_per_m=None):
+    """Plan eight stones with a wedge: on outlines, or by the method of the paper on pixels."""
+    return _planned(method, px_per_m)
+
+
 @cache
-def planned(name):
-    """Plan one of METRIC: with outlines and a wedge, or on pixels."""
-    exact = name.startswith("exact")
-    settings = ds.method_settings("best" if exact else "paper")
+def _planned(method, px_per_m):
+    exact, settings = method == "best", ds.method_settings(method)
     # So small that it decides nothing: in px and in metres the wedge is the same.
     small = WedgeSettings(thickness=0.01, thickness_mm=1.5)
     search, careless = replace(settings.search, budget=1), SettleSettings(margin=0.2, trials=0)
     settings = replace(settings, search=search, wedge=small, settle=careless)
-    scale = {"scale": 1.0 if exact else 0.5, "px_per_m": PX_PER_M if name.endswith("-m") else None}
-    stones, seed = source_stones(), 35 if exact else 3
+    scale = {"scale": 1.0 if exact else 0.5, "px_per_m": px_per_m}
+    stones, seed = source_stones(), 35 if exact else 20
     return ds.plan_wall(stones, 110.0, 40.0, seed=seed, settings=settings, **scale)
+
+
+def analysed(wall, blocks_xywh=None, **more):
+    """Show a wall that was not planned: a label image, or outlines and their blocks."""
+    given = {"blocks_xywh": blocks_xywh}
+    model = model_from_labels(wall).model if blocks_xywh is None else model_from_json(given)
+    return view_of_wall(wall, model, lateral_resistance(model, mechanism=True), **more)
