@@ -3,6 +3,7 @@
 import os
 import shutil
 import sys
+from dataclasses import replace
 from functools import partial
 
 import pytest
@@ -208,9 +209,10 @@ def test_stones_with_other_bytes_are_named_as_such(plan_copy, run):
 
 def test_words_of_the_engine(plan_copy):
     """Where the plan has no overlap it is the engine's doing that stones were pushed apart."""
-    move = BlockMove(3, 0.2, 0.01, 0.1, 0.46, fell=False)
+    move, plan = BlockMove(3, 0.2, 0.01, 0.1, 0.46, fell=False), read_plan(plan_copy)
     built = BuildUp((move,), {}, (0.0,), (1, 2), None, 0.58)
-    rows = dict(PhysicsCard(read_plan(plan_copy), built, None, None, overlap_px=0.0).rows())
+    found = check_plan(plan, read_stones(plan_copy / "rubble.png"))
+    rows = dict(PhysicsCard(plan, replace(found, overlap_depth=0.0), built, None).rows())
     assert rows["  pushed apart"].endswith("0.46 source px deep (stone 3): others had moved there")
     assert rows["  restless"].endswith("when the time of steps 1, 3 was up")
 

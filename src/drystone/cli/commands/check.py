@@ -89,8 +89,7 @@ def _physics_of(checked: Checked, *, quiet: bool) -> PhysicsCard | None:
     settings, _ = plan_settings(plan)
     with counting_bar("stones in the engine", len(groups), quiet=quiet) as on_group:
         built = build_up(groups, settings.mu, on_group=on_group)
-    report = checked.report
-    return PhysicsCard(plan, built, tilt_of(built), report.metrics, report.overlap_depth)
+    return PhysicsCard(plan, checked.report, built, tilt_of(built))
 
 
 def _find_stones(plan: Plan, folder: Path) -> Path:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from statistics import median
 
-from drystone.cli.inputs import files_of_wall, refuse_inputs
+from drystone.cli.inputs import files_of_wall, plan_file, refuse_inputs
 from drystone.cli.numbers import add_scale, picture_size_px, positive, refuse_outside, scale_notice
 from drystone.cli.output import make_folder, note, prepare_files, print_json
 from drystone.cli.progress import busy
@@ -65,8 +65,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     )
     refuse_outside(arguments.px_per_m, picture_size_px(assembly.plan.source))
     asked, made = list(dict.fromkeys(arguments.to)), {}
-    folder = path if path.is_dir() else path.parent
-    folder = Path(arguments.output) if arguments.output else folder
+    folder = Path(arguments.output) if arguments.output else plan_file(path).parent
     # What lies there is told before the work, as far as names are known.
     for place in (folder / name for one in asked for name in FORMATS[one].writes):
         if place.is_file():

@@ -81,12 +81,11 @@ def with_statics(assembly: Assembly) -> Drawing:
     drawing = drawing_of_assembly(assembly)
     items, notes = contacts(assembly), dict[str, str]()
     for result in (assembly.resistance.left, assembly.resistance.right):
-        side, says = result.direction.upper(), f"to the {result.direction}: {result.status.value}"
-        if result.alpha is not None:
-            says = (
-                f"to the {result.direction}: at a lateral load of alpha = {result.alpha:.4f} times "
-                "the weight (adequacy factor)"
-            )
+        side, alpha = result.direction.upper(), result.alpha
+        at = result.status.value if alpha is None else (
+            f"at a lateral load of alpha = {alpha:.4f} times the weight (adequacy factor)"
+        )  # fmt: skip
+        says = f"to the {result.direction}: {at}"
         arrows, length = forces(assembly, result)
         if arrows is not None:
             items.append(arrows)

@@ -12,7 +12,7 @@ from drystone.drawing.words.content import number
 from drystone.errors import counted
 from drystone.kernels.polygons import Points
 from drystone.model.builder import BuilderErrors
-from drystone.model.plan import Plan, PlanMetrics, Point
+from drystone.model.plan import Plan, Point
 from drystone.model.stone import StoneSet
 from drystone.physics.building import BlockMove, BuildUp
 from drystone.physics.scatter import TiltResult
@@ -33,14 +33,12 @@ class PhysicsCard:
     """What the engine says of a plan, beside the metrics of its limit analysis.
 
     `tilts` are to the left and to the right; None for a wall that fell or did not come to rest.
-    `overlap_px` is how deep outlines overlap by the plan itself.
     """
 
     plan: Plan
+    checked: CheckReport
     built: BuildUp
     tilts: tuple[TiltResult, TiltResult] | None
-    metrics: PlanMetrics | None
-    overlap_px: float = 0.0
 
     @property
     def first_fall(self) -> int | None:
@@ -59,7 +57,7 @@ class PhysicsCard:
         deepest = max(self.built.moves, key=lambda move: move.overlap_px, default=None)
         if deepest is not None and deepest.overlap_px >= NOTEWORTHY_PX:
             said = f"up to {deepest.overlap_px:.2f} source px deep ({self._name(deepest.id)})"
-            overlaps = self.overlap_px >= NOTEWORTHY_PX
+            overlaps = self.checked.overlap_depth >= NOTEWORTHY_PX
             why = "what overlaps cannot stay where it is" if overlaps else "others had moved there"
             rows.append(("  pushed apart", f"{said}: {why}"))
         if self.built.restless:
@@ -72,7 +70,7 @@ class PhysicsCard:
 
     def report(self) -> dict[str, Any]:
         """Return the same as JSON."""
-        furthest, moves = self._furthest(), self.built.moves
+        furthest, moves, metrics = self._furthest(), self.built.moves, self.checked.metrics
         return {
             "fallen": list(self.built.fallen),
             "first_fall": self.first_fall,
@@ -85,8 +83,8 @@ class PhysicsCard:
             "restless": [self._step(group) for group in self.built.restless],
             "tilt_left": self._alpha("left"),
             "tilt_right": self._alpha("right"),
-            "alpha_left": self.metrics.alpha_left if self.metrics else None,
-            "alpha_right": self.metrics.alpha_right if self.metrics else None,
+            "alpha_left": metrics and metrics.alpha_left,
+            "alpha_right": metrics and metrics.alpha_right,
             "moves": [
                 {"id": m.id, "move": m.move_px, "share": m.share, "turn_deg": m.turn_deg,
                  "overlap": m.overlap_px, "fell": m.fell}
@@ -105,7 +103,7 @@ class PhysicsCard:
         return f"{fallen} of {all_} blocks fall, the first after step {self.first_fall}"
 
     def _tilted(self, name: str) -> str:
-        said = f"limit analysis {number(getattr(self.metrics, f'alpha_{name}', None))}"
+        said = f"limit analysis {number(getattr(self.checked.metrics, f'alpha_{name}', None))}"
         if self.tilts is None:
             return f"not tilted, as it does not stand at rest; {said}"
         if self.tilts[name == "right"].fell_at_rest:
