@@ -229,18 +229,10 @@ def test_a_urdf_loads_with_mass_centre_and_inertia_of_its_meshes(exact, tmp_path
     assert len(dict(colours)) == len(colours)
 
 
-OUTLINES = {
-    "triangle": [(0, 0), (1, 0), (0, 1)],
-    "collinear corners": [(0, 0), (1, 0), (2, 0), (2, 1), (2, 2), (1, 2), (0, 2), (0, 1)],
-    "hollow": [(0, 0), (4, 0), (4, 3), (2, 0.5), (0, 3)],
-    "comb": [(0, 0), (5, 0), (5, 3), (4, 3), (4, 1), (3, 1), (3, 3), (2, 3), (2, 1), (1, 1), (1, 3),
-             (0, 3)],
-}  # fmt: skip
-
-
-@pytest.mark.parametrize("name", OUTLINES)
-def test_a_prism_is_closed_and_faces_outward(name):
-    outline = np.array(OUTLINES[name], float)
+def test_a_prism_is_closed_and_faces_outward():
+    """A comb, with a corner in the middle of its back."""
+    back, teeth = [(0, 0), (2, 0), (5, 0), (5, 3), (4, 3)], [(4, 1), (3, 1), (3, 3), (2, 3)]
+    outline = np.array([*back, *teeth, (2, 1), (1, 1), (1, 3), (0, 3)], float)
     solid = extruded(outline, -1.0, 2.0)
     mesh = trimesh.Trimesh(solid.vertices, solid.triangles, process=False)
     assert mesh.is_watertight
