@@ -5,8 +5,7 @@ the top of the wall, and a turn by a positive angle is a negative one.  In the D
 closed polylines with name, step and angle as extended data of the application DRYSTONE.
 """
 
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib import import_module
 from io import StringIO
@@ -170,7 +169,9 @@ def dxf_bytes(
     It is in metres, or without a unit; hatched areas are left out.  `about` is written below the
     wall.  Whoever asks has loaded ezdxf, which is an extra.
     """
-    with _undated(ezdxf):
+    before = ezdxf.options.write_fixed_meta_data_for_testing
+    ezdxf.options.write_fixed_meta_data_for_testing = True  # no dates, no ids by chance
+    try:
         doc = ezdxf.new("R2010")
         doc.header["$INSUNITS"] = _METRES if metric else _NO_UNIT
         doc.header["$MEASUREMENT"] = 1
@@ -196,14 +197,6 @@ def dxf_bytes(
         with StringIO() as text:
             doc.write(text)
             return text.getvalue().encode(doc.output_encoding)
-
-
-@contextmanager
-def _undated(ezdxf: Any) -> Iterator[None]:
-    before = ezdxf.options.write_fixed_meta_data_for_testing
-    ezdxf.options.write_fixed_meta_data_for_testing = True
-    try:
-        yield
     finally:
         ezdxf.options.write_fixed_meta_data_for_testing = before
 

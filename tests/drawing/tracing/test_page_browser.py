@@ -49,20 +49,16 @@ def photograph():
     return np.clip(np.asarray(image) + noise, 0, 255).astype(np.uint8)
 
 
-def found_rings():
-    """What was found: two stones as one, a shadow, the frame, and the others; one is missed."""
-    both = shapely.union_all([LEFT, RIGHT]).buffer(9).buffer(-9)
-    shapes = [both, SHADOW, shapely.box(5, 5, WIDTH - 5, HEIGHT - 5), *OTHERS]
-    return {i: list(shape.exterior.coords)[:-1] for i, shape in enumerate(shapes, 1)}
-
-
 @pytest.fixture
 def opened(visit, tmp_path):
-    """Open the page of the photograph with what was found on it."""
+    """Open the page with what was found: two stones as one, a shadow, the frame, and others."""
+    both = shapely.union_all([LEFT, RIGHT]).buffer(9).buffer(-9)
+    shapes = [both, SHADOW, shapely.box(5, 5, WIDTH - 5, HEIGHT - 5), *OTHERS]
+    rings = {i: list(shape.exterior.coords)[:-1] for i, shape in enumerate(shapes, 1)}
     path = tmp_path / "outlines.html"
     doubt = Doubt("W175", (1,), (186.0, 100.0), "stone 1 may be two")
     about = {"title": "Stones", "name": "pile.jpg", "kind": "stones"}
-    write_outline_page(path, photograph(), found_rings(), **about, doubts=(doubt,))
+    write_outline_page(path, photograph(), rings, **about, doubts=(doubt,))
     return lambda **context: visit(path, accept_downloads=True, **context)
 
 

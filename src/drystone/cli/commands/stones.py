@@ -75,12 +75,14 @@ def run(arguments: argparse.Namespace) -> ExitCode:
             }
         )
         return ExitCode.DONE
+    area = f"{stones.total_area_px} px"
+    metres = None if px_per_m is None else stones.total_area_px / px_per_m**2
     print_table(
         f"{source.path}: {counted(len(stones), 'stone')}",
         [
             ("image", f"{source.width_px} x {source.height_px} px"),
             *([] if px_per_m is None else [("scale", f"{px_per_m:g} px a metre")]),
-            ("total area", _area(stones.total_area_px, px_per_m)),
+            ("total area", area if metres is None else f"{metres:.3f} m² ({area})"),
             ("median stone", f"{_size(median, px_per_m)}, {median_area:g} px²"),
             ("largest stone", f"{largest.id}: {_size(sides[largest.id], px_per_m)}"),
             ("clusters", str(max(clusters.values()))),
@@ -98,7 +100,3 @@ def _size(size_px: tuple[float, float], px_per_m: float | None) -> str:
         return px
     per_px_cm = 100.0 / px_per_m
     return f"{length_px * per_px_cm:.1f} x {width_px * per_px_cm:.1f} cm ({px})"
-
-
-def _area(area_px: int, px_per_m: float | None) -> str:
-    return f"{area_px} px" if px_per_m is None else f"{area_px / px_per_m**2:.3f} m² ({area_px} px)"

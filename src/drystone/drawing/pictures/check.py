@@ -235,8 +235,12 @@ def plot_risk(card: Rehearsed) -> Axes:
     box = x0 - pad, min(y0, 0.0) - 2 * pad, x1 + pad, y1 + pad
     items: list[Drawable] = [*ground(box)]
     for region in regions:
-        risk = card.risk.get(region.id)
-        fill = PALE if risk is None else risk_colour(risk)
+        risk, fill = card.risk.get(region.id), PALE
+        if risk is not None:
+            ends = (SURE, UNSURE) if risk < 0.5 else (UNSURE, ALWAYS)
+            share = 2 * risk - (risk >= 0.5)
+            mixed = (a + share * (b - a) for a, b in zip(*map(rgb, ends), strict=True))
+            fill = "#" + "".join(f"{round(255 * part):02x}" for part in mixed)
         area = Surface(f"block-{region.id}", region.loops, fill)
         items.append(area)
         if risk:
@@ -249,10 +253,3 @@ def plot_risk(card: Rehearsed) -> Axes:
     }
     title = f"Stones that fall, of 100 rehearsals; {card.verdict}"
     return draw(Drawing(tuple(items), box, title=title, legend=legend))
-
-
-def risk_colour(risk: float) -> str:
-    """Return the colour of a risk in [0, 1]."""
-    low, high, share = (SURE, UNSURE, 2 * risk) if risk < 0.5 else (UNSURE, ALWAYS, 2 * risk - 1)
-    mixed = (a + share * (b - a) for a, b in zip(rgb(low), rgb(high), strict=True))
-    return "#" + "".join(f"{round(255 * part):02x}" for part in mixed)
