@@ -215,6 +215,9 @@ def test_words_of_the_engine(plan_copy):
     rows = dict(PhysicsCard(plan, replace(found, overlap_depth=0.0), built, None).rows())
     assert rows["  pushed apart"].endswith("0.46 source px deep (stone 3): others had moved there")
     assert rows["  restless"].endswith("when the time of steps 1, 3 was up")
+    for side in ("left", "right"):
+        alpha = getattr(plan.metrics, f"alpha_{side}")
+        assert rows[f"  tilted to the {side}"].endswith(f"limit analysis {alpha:.3f}")
 
 
 def test_what_cannot_be_seen_is_not_drawn(plan_copy, tmp_path, run):
