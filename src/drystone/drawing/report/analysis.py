@@ -81,9 +81,14 @@ def _write_report(folder: Path, card: Card, loads: Loads, per_unit_m: float | No
     ] or [(f"with mu = {curve[0].mu:g} to {curve[-1].mu:g}", "no load multiplier")]  # fmt: skip
     rows = [*_full_names(card.rows()), *friction]
     cite = CITATION.format(version=version("drystone"), sha256=card.sha256)
+    # Where a fall was found no load is needed.
+    without = {
+        side: 0.0 if end.status is LimitStatus.UNSTABLE else end.alpha
+        for side, end in card.without.items()
+    }
     view = view_of_wall(
         shapes, model, resistance, title="Limit analysis of a wall", unit=unit, names=wall.names,
-        cards=_cards(card), load_case=card.load_case, without_dilatancy=card.alphas_by_coulomb,
+        cards=_cards(card), load_case=card.load_case, without_dilatancy=without,
     )  # fmt: skip
     view["inputs"] = [list(row) for row in (*rows, ("cite", cite))]
     view["notices"] = [asdict(notice) for notice in wall.notices]
@@ -114,9 +119,8 @@ def _full_names(rows: Iterable[tuple[str, str]]) -> Iterator[tuple[str, str]]:
 
 def _cards(card: Card) -> Iterator[content.ResultCard]:
     """Yield what the strength of the associative analysis does not say."""
-    both = card.nonassociative
-    for result in () if both is None else (both.left, both.right):
-        side, value = result.direction, content.number(result.alpha)
+    for side, result in card.without.items():
+        value = content.number(result.alpha)
         said = f"Joints slide without opening (Coulomb). {result.message}"
         name = f"Without dilatancy, to the {side}"
         yield content.ResultCard(f"{content.ALPHA} {side}", name, value, "higher", said)

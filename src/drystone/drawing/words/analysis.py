@@ -176,7 +176,8 @@ class Card(RangeCard):
         return "" if known else self.wall.why_it_falls(self.failures)
 
     @property
-    def _without(self) -> dict[str, NonassociativeResult]:
+    def without(self) -> dict[str, NonassociativeResult]:
+        """The answers without dilatancy, by direction; none where they were not asked for."""
         found = self.nonassociative
         return {} if found is None else {"left": found.left, "right": found.right}
 
@@ -229,17 +230,9 @@ class Card(RangeCard):
         return self.resistance.stable and not self._can_fall
 
     @property
-    def alphas_by_coulomb(self) -> dict[str, float | None]:
-        """Load multipliers without dilatancy by direction, 0 where a fall was found."""
-        return {
-            side: 0.0 if end.status is LimitStatus.UNSTABLE else end.alpha
-            for side, end in self._without.items()
-        }
-
-    @property
     def _can_fall(self) -> bool:
         """Whether a fall without dilatancy was found."""
-        return LimitStatus.UNSTABLE in [end.status for end in self._without.values()]
+        return LimitStatus.UNSTABLE in [end.status for end in self.without.values()]
 
     def _standing(self) -> str:
         """Say whether the dead load alone is carried, and by what."""
@@ -261,8 +254,8 @@ class Card(RangeCard):
     def _of_side(self, side: str, result: LimitResult) -> list[tuple[str, str]]:
         """Tell the load to one side, and under it what belongs to this side."""
         rows = [(f"load to the {side}", _alpha(result))]
-        if self._without:
-            without = self._without[side]
+        if self.without:
+            without = self.without[side]
             words = without.message[:1].lower() + without.message[1:].rstrip(".")
             rows.append(("  without dilatancy", _alpha(without, words)))
         if side in self.loose:
@@ -274,12 +267,12 @@ class Card(RangeCard):
         return rows
 
     def _without_dilatancy(self) -> dict[str, Any] | None:
-        if not self._without:
+        if not self.without:
             return None
         return {
-            **_alphas(self._without),
-            **{f"message_{side}": end.message for side, end in self._without.items()},
-            **{f"answers_{side}": list(end.answers) for side, end in self._without.items()},
+            **_alphas(self.without),
+            **{f"message_{side}": end.message for side, end in self.without.items()},
+            **{f"answers_{side}": list(end.answers) for side, end in self.without.items()},
             "words": {side: failure.words for side, failure in self.loose.items()},
         }
 
