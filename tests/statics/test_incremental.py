@@ -33,16 +33,6 @@ SOLVERS = {"simplex": {SIMPLEX}, "local": {SIMPLEX, LOCAL, WARM}, "highs": {WARM
 """Who answers about walls that stand."""
 
 
-def beginning(name, monkeypatch):
-    """What begins a wall that is analysed by one of the analyses."""
-    if name == "highs":
-        monkeypatch.setattr(simplex, "AVAILABLE", False)
-        return incremental_analysis
-    if not simplex.AVAILABLE:
-        pytest.skip("the simplex kernel is not compiled here")
-    return partial(incremental_analysis, most=1) if name == "local" else incremental_analysis
-
-
 def upwards(labels):
     whole = model_from_labels(labels).model
     return whole, sorted(whole.blocks, key=lambda block: block.centroid[1])
@@ -93,7 +83,12 @@ def name(request):
 @pytest.fixture
 def begin(name, monkeypatch):
     """What begins a wall that is analysed by it."""
-    return beginning(name, monkeypatch)
+    if name == "highs":
+        monkeypatch.setattr(simplex, "AVAILABLE", False)
+        return incremental_analysis
+    if not simplex.AVAILABLE:
+        pytest.skip("the simplex kernel is not compiled here")
+    return partial(incremental_analysis, most=1) if name == "local" else incremental_analysis
 
 
 @pytest.mark.parametrize("labels", [coursed(1, 5, 110, 2), irregular(3, 18, 100, 70)])

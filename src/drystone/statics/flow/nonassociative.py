@@ -27,16 +27,10 @@ forces go with the motion, then, of the motions that go with these forces, the o
 into the way of the forces which would lower alpha further (their reduced costs weigh them).
 
 What is heuristic: nothing says that rounds find a solution (they run away towards motions in which
-the live load does no work), or that descent ends at the least one.  So there are several starts
-in a fixed order, the least of all solutions found is told, and every answer is checked from the
-blocks themselves.  Starts with fast slip ask for small normal forces, everywhere or in the head
-joints, and lead to the lower solutions.
-
-**Jammed contacts.**  Before any load is looked for, the blocks are let go under their dead load
-alone (:mod:`drystone.statics.flow.release`).  And the least alpha found may be negative.
-
-**No limit.**  Where no load is too great for associated flow there may still be one without
-dilatancy, and it is looked for.
+the live load does no work), or that descent ends at the least one.  So there are several starts,
+the least of all solutions found is told, and every answer is checked from the blocks themselves.
+Starts with fast slip ask for small normal forces, everywhere or in the head joints, and lead to
+the lower solutions.  What an answer means: docs/analysis.md.
 """
 
 from collections.abc import Callable, Sequence
@@ -44,12 +38,13 @@ from dataclasses import astuple, dataclass, replace
 
 import numpy as np
 
+from drystone.statics.failing.mechanism import kinematics
 from drystone.statics.flow.flow_search import FlowState, NonassociativeSettings, Search
 from drystone.statics.flow.release import fall_of, with_inertia
 from drystone.statics.limit import DIRECTIONS, lateral_resistance
 from drystone.statics.loads import Loads, tilting_table
-from drystone.statics.lp.program import EquilibriumProgram, Floats, assemble
-from drystone.statics.model import FREEDOMS, GROUND, Direction, RigidBlockModel
+from drystone.statics.lp.program import EquilibriumProgram, Floats, assemble, units_of
+from drystone.statics.model import FREEDOMS, Direction, RigidBlockModel
 from drystone.statics.result import LateralResistance, LimitResult, LimitStatus, Mechanism
 
 HOLDS = 1e-7
@@ -97,59 +92,32 @@ def check_flow(
     block that the normal points into; the tangent of a normal (x, y) is (y, -x).
     """
     loads = tilting_table(model) if loads is None else loads
-    free = [block for block in model.blocks if not block.fixed]
-    weight = float(np.mean([block.weight for block in free]))
-    length = float(np.sqrt(np.mean([block.area for block in free])))
-    velocity = dict(zip(mechanism.block_ids, mechanism.velocity, strict=True))
-    still = np.zeros(3)
-    place = {block.id: i for i, block in enumerate(model.blocks)}
-    sign = -1.0 if direction == "left" else 1.0
-    balance = loads.dead + sign * alpha * loads.live
-    closing = friction = dilatancy = dissipation = 0.0
-    acting = iter(forces)
-    for interface in model.interfaces:
-        mu = model.friction(interface)
-        normal = np.array(interface.normal)
-        tangent = np.array((normal[1], -normal[0]))
-        for point in interface.points:
-            n, t = next(acting)
-            rate = np.zeros(2)
-            for block_id, side in ((interface.block, 1.0), (interface.other, -1.0)):
-                if block_id == GROUND:
-                    continue
-                arm_x, arm_y = point - model.blocks[place[block_id]].centroid
-                vx, vy, turn = velocity.get(block_id, still)
-                rate += side * np.array((vx - turn * arm_y, vy + turn * arm_x))
-                fx, fy = side * (n * normal + t * tangent)
-                balance[place[block_id]] += (fx, fy, arm_x * fy - arm_y * fx)
-            opening, slip = rate @ normal, rate @ tangent
-            friction = max(friction, -n, abs(t) - mu * n)
-            closing = max(closing, -opening)
-            dilatancy += abs(n * opening)
-            dissipation += abs(t * slip + mu * n * abs(slip))
-    residual = max(
-        abs(balance[place[block.id], k]) / (length if freedom == "turn" else 1.0)
-        for block in free
-        for k, freedom in enumerate(FREEDOMS)
-        if freedom not in block.held
-    )
-    power = sign * sum(loads.live[place[block.id]] @ velocity[block.id] for block in free)
-    units = (1.0, 1.0, length)
-    fastest = float(np.abs(mechanism.velocity * units).max())
-    held = [
-        abs(velocity[block.id][k]) * units[k]
-        for block in model.blocks
-        if block.id in velocity
-        for k, freedom in enumerate(FREEDOMS)
-        if block.fixed or freedom in block.held
-    ]
+    own, sign = units_of(model), -1.0 if direction == "left" else 1.0
+    units = np.array([1.0, 1.0, own.length])
+    free = [not block.fixed for block in model.blocks]
+    moves = [[not b.fixed and freedom not in b.held for freedom in FREEDOMS] for b in model.blocks]
+    kin, (n, t) = kinematics(model, mechanism), forces.T
+    # The last row is that of the ground.
+    balance = np.vstack((loads.dead + sign * alpha * loads.live, np.zeros(3)))
+    tangent = np.column_stack((kin.normal[:, 1], -kin.normal[:, 0]))
+    force = n[:, None] * kin.normal + t[:, None] * tangent
+    force, arm = np.stack((force, -force), axis=1), kin.point[:, None] - kin.centroid[kin.blocks]
+    turning = arm[..., 0] * force[..., 1] - arm[..., 1] * force[..., 0]
+    np.add.at(balance, kin.blocks, np.dstack((force, turning)))
+    opening, slip = kin.relative.T
+    leaving = np.maximum(-n, np.abs(t) - kin.friction * n)
+    velocity = np.abs(kin.velocity[:-1] * units)
+    fastest = float(velocity.max())
+    live = zip(loads.live[free], kin.velocity[:-1][free], strict=True)
+    power = sign * sum(load @ way for load, way in live)
+    lost = sum(np.abs(t * slip + kin.friction * n * np.abs(slip)).tolist())
     return FlowCheck(
-        equilibrium=float(residual / weight),
-        friction=float(friction / weight),
-        closing=float(closing / fastest),
-        held=float(max(held, default=0.0)) / fastest,
-        dilatancy=float(dilatancy / power) if power > 0 else np.inf,
-        dissipation=float(dissipation / power) if power > 0 else np.inf,
+        equilibrium=float(np.abs(balance[:-1] / units)[moves].max(initial=0.0)) / own.weight,
+        friction=float(leaving.max(initial=0.0)) / own.weight,
+        closing=float(abs(opening.min(initial=0.0))) / fastest,
+        held=float(velocity[np.invert(moves)].max(initial=0.0)) / fastest,
+        dilatancy=float(sum(np.abs(n * opening).tolist()) / power) if power > 0 else np.inf,
+        dissipation=float(lost / power) if power > 0 else np.inf,
     )
 
 

@@ -1,17 +1,14 @@
 """How blocks that are let go start to fall, by Coulomb friction without dilatancy.
 
-Equilibrium says that forces exist which would hold the blocks.  Whether they arise is another
-question: a brick between two piers is held as soon as the piers are pressed together by
-something, and falls when they are not.  So it is asked whether Newton's law has another answer
-than rest.  At the moment when the blocks are let go, forces and an acceleration a obey
+Equilibrium says that forces exist which would hold the blocks, not that they arise
+(docs/analysis.md).  So it is asked whether Newton's law has another answer than rest.  At the
+moment when the blocks are let go, forces and an acceleration a obey
 
     M a = dead + contact forces;  a_n >= 0, n >= 0, n a_n = 0;  |t| <= mu n, t a_t = -mu n |a_t|:
 
 the flow rule of :mod:`drystone.statics.flow.flow_search`, with the rates at which contacts begin to
 open and slide.  With a = 0 that is equilibrium, and with a != 0 the blocks fall: their weight does
-more work than friction takes.  A motion in equilibrium, dead load and friction in balance, would
-be too narrow a claim: it says that a block creeps under just that squeeze which it needs, and
-blocks that fall freely have none.
+more work than friction takes.
 
 **Rounds**, as in :mod:`drystone.statics.flow.nonassociative`: for given slip rates s_i the problem
 

@@ -88,10 +88,7 @@ def units_of_light_blocks(model: RigidBlockModel, program: EquilibriumProgram) -
     sizes = np.sqrt([block.area for block in free]) / program.length
     own = np.column_stack((weights, weights, weights * sizes))
     own[~light] = 1.0
-    units = np.ones(len(program.rhs))
-    moves = program.rows >= 0
-    units[program.rows[moves]] = own[moves]
-    return units
+    return np.asarray(own[program.rows >= 0])
 
 
 def _unscaled(extreme: Extreme, units: Floats) -> Extreme:
