@@ -11,14 +11,7 @@ from drystone.kernels.raster import turn
 def random_polygon(rng, corners, size):
     """A star-shaped polygon of random radii: counter-clockwise, its centroid at the origin.
 
-    Parameters
-    ----------
-    rng : numpy Generator
-        Two numbers a corner are drawn from it.
-    corners : int
-        At least 3; more than 4 are seldom convex.
-    size : float
-        It is at most this wide in any direction.
+    Of more than 4 corners it is seldom convex; it is at most `size` wide in any direction.
     """
     # Never half a turn or more from one corner to the next, or it need not be simple.
     spread = min(0.9, 0.45 * (corners - 2))

@@ -18,14 +18,7 @@ NO_JOINT = 0.5
 class Indices:
     """Indices of an action: of the stabilised pose on the landscape before it (LLC: after it).
 
-    Parameters
-    ----------
-    SF, LFR, GDS, NHR, IWR, IS : float
-        Eq. 3 to Eq. 10; NHR is best at 0, the others at 1.
-    LLC : float or None
-        Eq. 11; None when the wall would not stand.
-    boundary : bool
-        True for a stone at an end of the wall, where IS stands in for IWR.
+    SF to IS are those of Eq. 3 to Eq. 10; NHR is best at 0, the others at 1.
     """
 
     SF: float
@@ -34,8 +27,8 @@ class Indices:
     NHR: float
     IWR: float
     IS: float
-    LLC: float | None
-    boundary: bool
+    LLC: float | None  # Eq. 11; None when the wall would not stand
+    boundary: bool  # a stone at an end of the wall, where IS stands in for IWR
 
     @property
     def third(self) -> float:

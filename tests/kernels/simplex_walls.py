@@ -7,14 +7,15 @@ import pytest
 
 from drystone.contacts.blocks import model_from_labels
 from drystone.kernels import simplex
-from drystone.kernels.cones import GROUND_BODY, cone_edges
 from drystone.kernels.simplex import Added, Cones, Optimum
-from drystone.statics.model import GROUND
+from drystone.statics.lp.cone_program import ConeProgram
+from drystone.statics.lp.program import Units
 from tests.naive import simplex as naive
+from tests.statics.walls import empty, with_block
 
 SIGNS = (1, -1)
 NOTHING = np.empty(0, np.int32)
-LENGTH_PX = 15.0
+UNITS = Units(15.0, 225.0)
 
 
 needs_kernel = pytest.mark.skipif(
@@ -32,55 +33,25 @@ def cones(first, second, entries):
     return Cones(np.array(first, np.int32), np.array(second, np.int32), table)
 
 
-def edges_of(interfaces, blocks, mu):
-    """The two edges of the cone of every contact point."""
-
-    def body(number):
-        if number == GROUND:
-            return GROUND_BODY
-        place, block = blocks[number]
-        return place, *block.centroid
-
-    return Cones(
-        *cone_edges(
-            [(body(interface.block), body(interface.other)) for interface in interfaces],
-            [interface.normal for interface in interfaces],
-            [mu] * len(interfaces),
-            [interface.points for interface in interfaces],
-            LENGTH_PX,
-        )
-    )
-
-
-def added_blocks(model, placed, new):
-    """Some blocks of a model on top of others, with all contacts to those and to each other."""
-    blocks = {block.id: (i, block) for i, block in enumerate([*placed, *new])}
-    ids = {block.id for block in new}
-    there = {GROUND, *blocks}
-    touching = [
-        i for i in model.interfaces if ids & {i.block, i.other} and {i.block, i.other} <= there
-    ]
-    weights = np.array([block.weight for block in new]) / LENGTH_PX**2
-    return Added(weights, edges_of(touching, blocks, model.mu), NOTHING)
-
-
 def grown(labels, candidates=1, at_once=1):
     """The optima of a wall that grows from the lowest block up, and what may be added to it.
 
     The first of these is added; ends when the wall falls.
     """
     optima = {sign: Optimum.of_nothing(sign) for sign in SIGNS}
-    model = model_from_labels(labels).model
-    rest = sorted(model.blocks, key=lambda block: block.centroid[1])
+    whole, built, program = model_from_labels(labels).model, empty(), ConeProgram.empty(UNITS)
+    rest = sorted(whole.blocks, key=lambda block: block.centroid[1])
     for placed in range(0, len(rest) - at_once + 1, at_once):
         left = rest[placed:]
         groups = [left[:at_once], *([block] for block in left[at_once : at_once + candidates - 1])]
-        choices = [added_blocks(model, rest[:placed], group) for group in groups]
+        models = [with_block(built, *group, whole=whole) for group in groups]
+        choices = [program.columns_of(model.added, model.mu) for model in models]
         yield optima, choices
         answers = {sign: optima[sign].solved_with(choices[0]) for sign in SIGNS}
         if any(answer.status != simplex.OPTIMAL for answer in answers.values()):
             return
         optima = {sign: optima[sign].extended(choices[0], answers[sign]) for sign in SIGNS}
+        built, program = models[0], program.appended(models[0].added, choices[0])
 
 
 def with_columns(added, more):

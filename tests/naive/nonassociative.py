@@ -1,7 +1,5 @@
 """Slow, obvious twin of drystone.statics.flow.nonassociative: all sets of contact states."""
 
-from dataclasses import dataclass
-
 import highspy
 import numpy as np
 from scipy.sparse import csc_array
@@ -23,15 +21,8 @@ MOTION = {
 """Bounds of the rates of opening and slip."""
 
 
-@dataclass(frozen=True)
-class Limits:
-    """Load multipliers of all solutions with the same states of the contact points."""
-
-    least: float
-
-
 def all_limits(model, direction):
-    """Enumerate the solutions of the non-associative problem for a handful of blocks.
+    """Least load multipliers of the non-associative problem, one for each set of contact states.
 
     States are given to one contact point after another; a branch ends where no forces or no
     motion are left, whatever the other points do.
@@ -53,7 +44,7 @@ def _branch(shape, motions, forces, states):
         return
     k = len(states)
     if k == count:
-        yield Limits(least)
+        yield least
         return
     normal, up, down = 1 + 2 * k, size + 2 * k, size + 2 * k + 1
     for state in STATES:

@@ -6,13 +6,10 @@ from fractions import Fraction
 SLACK = Fraction(1, 10**12)
 
 
-def _mean(values):
-    return statistics.mean(map(Fraction, values))
-
-
 def _at_least_mean(pi, index):
     """Those with at least the mean, which are never none of some."""
-    return [a for a in pi if Fraction(index(a)) >= _mean(map(index, pi)) - SLACK]
+    values = [Fraction(index(a)) for a in pi]
+    return [a for a, v in zip(pi, values, strict=True) if v >= statistics.mean(values) - SLACK]
 
 
 def _third(a):

@@ -39,40 +39,6 @@ def contact_matrices(model):
     return normal, tangent
 
 
-def limit_alphas(model):
-    """Least upper bounds of alpha to the left and right; None when unstable by itself.
-
-    Forces are normal and tangential, friction is two inequalities (Eq. 23c), nothing is scaled.
-    """
-    normal, tangent = contact_matrices(model)
-    none, one = np.zeros(normal.shape[1]), np.eye(normal.shape[1])
-    live, dead = np.zeros((2, 3 * len(model.blocks)))
-    live[0::3] = dead[1::3] = [block.weight for block in model.blocks]
-    friction = np.block(
-        [[none[:, None], -model.mu * one, one], [none[:, None], -model.mu * one, -one]]
-    )
-    forces = [(0, None)] * len(one) + [(None, None)] * len(one)
-
-    def solve(sign, highest):
-        answer = linprog(
-            [-1.0, *none, *none],
-            A_ub=friction,
-            b_ub=np.zeros(len(friction)),
-            A_eq=np.column_stack((sign * live, normal, tangent)),
-            b_eq=dead,
-            bounds=[(0, highest), *forces],
-        )
-        assert answer.status in (0, 2)
-        return -answer.fun if answer.status == 0 else None
-
-    if solve(1.0, 0.0) is None:
-        return None
-    left, right = solve(-1.0, None), solve(1.0, None)
-    assert left is not None
-    assert right is not None
-    return left, right
-
-
 def cone_program(model):
     """Matrix and right-hand side of the tilting table.
 

@@ -24,51 +24,25 @@ class Offer:
     """An action that a policy may choose: a stone at rest in its place, in a wall that stands.
 
     Lengths are working px, areas their squares; places are in the wall frame, x to the right from
-    the wall's left end, y up from the ground.  The end to which a stone is placed is `side`.
-
-    Parameters
-    ----------
-    stone_id : int
-        Id of the stone.
-    angle_deg : float
-        Angle of the trial pose, counter-clockwise from the source image.
-    turned_deg : float
-        How far it turned from there until it rested, in [0, 180].
-    side : {"left", "right"}
-        End of the wall from which it is placed.
-    indices : Indices
-        Eq. 3 to 11; LLC is positive.
-    area_px : float
-        Of the stone.
-    left_px, bottom_px, right_px, top_px : float
-        Box of the stone in its place.
-    centroid_px : (float, float)
-        Of the stone in its place.
-    support_px : ((float, float), (float, float)) or None
-        The leftmost and the rightmost of the points that bear the stone from below (the line AB
-        of §3.7), the same twice when there is one; None when there is none.
-    touches : tuple of int
-        Ids of the stones that it touches, wedges and the ground left out.
-    wedges : int
-        How many wedges hold it.
-    wall_width_px, wall_height_px : int
-        Size of the wall.
+    the wall's left end, y up from the ground.
     """
 
     stone_id: int
-    angle_deg: float
-    turned_deg: float
-    side: Side
-    indices: Indices
+    angle_deg: float  # of the trial pose, counter-clockwise from the source image
+    turned_deg: float  # how far it turned from there until it rested, in [0, 180]
+    side: Side  # end of the wall from which it is placed
+    indices: Indices  # Eq. 3 to 11; LLC is positive
     area_px: float
-    left_px: float
+    left_px: float  # box of the stone in its place
     bottom_px: float
     right_px: float
     top_px: float
-    centroid_px: Point
+    centroid_px: Point  # of the stone in its place
+    # The leftmost and the rightmost of the points that bear the stone from below (the line AB of
+    # §3.7), the same twice when there is one; None when there is none.
     support_px: tuple[Point, Point] | None
-    touches: tuple[int, ...] = ()
-    wedges: int
+    touches: tuple[int, ...] = ()  # ids of the stones that it touches, without wedges and ground
+    wedges: int  # how many wedges hold it
     wall_width_px: int
     wall_height_px: int
 
