@@ -1,0 +1,232 @@
+"""What is measured of an image: the wall in it, ways along its joints, stones, top and ends."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from PIL import Image
+
+from drystone.errors import LabelImageError, UsageError
+from drystone.metrics import paths
+from drystone.metrics.frame import frame_wall, reduce_labels
+from drystone.metrics.measure import measure_labels
+from drystone.metrics.paths import joint_mask
+from drystone.metrics.shape import flush_deviation, level_deviation, stone_sizes
+from tests.kernels.test_paths import noise
+from tests.metrics.walls import bricks, walls
+from tests.naive import metrics as naive
+from tests.strategies import repeatable
+
+
+def wall_in(height, width, top, left, stone=(4, 6)):
+    labels = np.zeros((height, width), np.uint32)
+    labels[top : top + stone[0], left : left + stone[1]] = 3
+    return labels
+
+
+@pytest.mark.parametrize(
+    ("left", "width", "width_px", "ends", "stone"),
+    [
+        (7, 6, None, (0.0, 6.0), range(6)),
+        # An image as wide as the wall keeps its columns; in another the stones are in the middle.
+        (7, 6, 30.4, (0.0, 30.0), range(7, 13)),
+        (20, 6, 11, (0.0, 11.0), range(2, 8)),
+        # Stones wider than the wall stick out on both sides.
+        (20, 9, 6, (1.5, 7.5), range(9)),
+    ],
+)
+def test_end_lines(left, width, width_px, ends, stone):
+    frame = frame_wall(wall_in(20, 30, top=5, left=left, stone=(4, width)), width_px)
+    assert (frame.left_px, frame.right_px) == ends
+    assert len(frame.labels) == 4
+    assert frame.labels.shape[1] == max(len(stone), ends[1] - ends[0])
+    assert np.flatnonzero(frame.labels[0]).tolist() == list(stone)
+
+
+def test_no_stones_and_no_scale_are_refused_and_sizes_round_half_up():
+    with pytest.raises(LabelImageError, match=r"E104 .*30x20 px are 0"):
+        frame_wall(np.zeros((20, 30), np.uint32))
+    assert reduce_labels(np.ones((5, 7), np.uint8), 0.5).shape == (3, 4)
+    with pytest.raises(ValueError, match="scale must be positive"):
+        reduce_labels(np.ones((5, 7), np.uint8), 0.0)
+
+
+@repeatable()
+@given(walls(max_px=16))
+def test_joints_are_their_slow_twin(labels):
+    assert np.array_equal(joint_mask(labels), naive.joint_mask(labels))
+
+
+@repeatable()
+@given(walls(), st.floats(0.05, 2.5) | st.just(1.0))
+def test_reduced_is_its_slow_twin_and_a_copy(labels, scale):
+    reduced = reduce_labels(labels, scale)
+    assert np.array_equal(reduced, naive.reduce_labels(labels, scale))
+    assert reduced.dtype == labels.dtype
+    assert not np.shares_memory(reduced, labels)
+
+
+@repeatable()
+@given(walls(), st.data())
+def test_sizes_are_those_of_the_slow_twin(labels, data):
+    ids = sorted({int(value) for value in labels.ravel()} - {0})
+    wedges = data.draw(st.sets(st.sampled_from(ids), max_size=len(ids) - 1))
+    sizes = stone_sizes(labels, wedges)
+    mean_height, mean_width = naive.mean_sizes(labels, wedges)
+    assert sizes.count == len(ids) - len(wedges)
+    assert sizes.area_px == sum(int((labels == i).sum()) for i in ids if i not in wedges)
+    assert sizes.mean_height_px == pytest.approx(mean_height)
+    assert sizes.mean_width_px == pytest.approx(mean_width)
+
+
+def test_an_image_without_background_has_its_sizes_and_wedges_alone_are_no_wall():
+    assert stone_sizes(bricks(2, 2, 5, 8)).area_px == 160
+    with pytest.raises(LabelImageError, match=r"E104 .*background or wedges"):
+        stone_sizes(np.full((4, 4), 9, np.uint32), {9})
+
+
+@repeatable()
+@given(walls(), st.floats(1, 50), st.floats(1, 50))
+def test_level_and_flush_are_their_slow_twins(labels, wall_width, stone_px):
+    expected = naive.level_deviation(labels, stone_px)
+    assert level_deviation(labels, stone_px) == pytest.approx(expected, abs=1e-12)
+    frame = frame_wall(labels, wall_width)
+    expected = naive.flush_deviation(frame.labels, frame.left_px, frame.right_px, stone_px)
+    assert flush_deviation(frame, stone_px) == pytest.approx(expected, abs=1e-12)
+
+
+JOINTS = st.builds(
+    noise,
+    st.tuples(st.integers(2, 14), st.integers(21, 45)),
+    st.sampled_from([0.6, 0.8]),
+    st.integers(0, 10**6),
+)
+
+
+@repeatable()
+@given(JOINTS)
+def test_lengths_are_those_of_the_slow_twin(joint):
+    expected = pytest.approx(naive.vertical_lengths(joint), abs=1e-9)
+    assert [path.length_px for path in paths.vertical_paths(joint)] == expected
+    turned = joint.T
+    assert [path.length_px for path in paths.horizontal_paths(turned)] == expected
+    assert paths.horizontal_lengths(turned) == tuple(
+        path.length_px for path in paths.horizontal_paths(turned)
+    )
+
+
+@repeatable()
+@given(walls())
+def test_pixels_lead_along_the_joints_from_top_to_bottom(labels):
+    joint = joint_mask(labels)
+    for path in paths.vertical_paths(joint):
+        rows, cols = path.pixels.T
+        assert joint[rows, cols].all()
+        assert (rows[0], rows[-1]) == (0, joint.shape[0] - 1)
+        assert cols[0] == cols[-1]
+        steps = np.abs(np.diff(path.pixels, axis=0))
+        assert (steps.max(axis=1) == 1).all()
+        assert path.length_px == pytest.approx(np.hypot(*steps.T).sum())
+    turned = [path.pixels[:, ::-1].tolist() for path in paths.horizontal_paths(joint.T)]
+    assert turned == [path.pixels.tolist() for path in paths.vertical_paths(joint)]
+
+
+def test_starts_stand_ten_pixels_from_the_ends_and_a_tenth_of_the_width_apart():
+    columns = [path.pixels[0, 1] for path in paths.vertical_paths(np.ones((5, 57), bool))]
+    assert columns == [10, 15, 20, 25, 30, 35, 40, 45]
+    assert paths.vertical_paths(np.ones((5, 20), bool)) == ()
+
+
+@pytest.mark.parametrize("stone", [(2, slice(None)), (0, 10)], ids=["across", "at the start"])
+def test_where_a_stone_is_in_the_way_there_is_no_path(stone):
+    joint = np.ones((5, 21), bool)
+    joint[stone] = False
+    assert paths.vertical_paths(joint) == paths.horizontal_paths(joint.T) == ()
+    assert paths.vertical_arrangement(joint) is None
+
+
+@repeatable(30)
+@given(walls(max_px=36))
+def test_arrangements_are_their_slow_twins(labels):
+    joint = joint_mask(labels)
+    found = paths.vertical_arrangement(joint), paths.horizontal_arrangement(joint)
+    for each, way in zip(found, (joint, joint.T), strict=True):
+        assert each == pytest.approx(naive.vertical_arrangement(way), abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("name", "scale", "stones", "expected"),
+    [
+        ("R", 0.2, 34, (0.846, 33.95, 0.59)),
+        ("PR", 0.5, 32, (0.808, 29.50, 1.50)),
+        ("IR", 0.3, 61, (0.850, 23.77, 3.69)),
+    ],
+)
+def test_walls_of_the_masons(data_dir, name, scale, stones, expected):
+    """F_SF, F_AV and F_AH measured when the definition was fixed, to their rounding."""
+    with Image.open(data_dir / "almeida" / f"{name}.png") as picture:
+        pixels = np.asarray(picture)
+    ids = pixels if pixels.ndim == 2 else pixels[..., 0]
+    metrics = measure_labels(reduce_labels(ids, scale))
+    assert metrics.stones == stones
+    assert (round(metrics.F_SF, 3), round(metrics.F_AV, 2), round(metrics.F_AH, 2)) == expected
+
+
+def test_a_full_wall():
+    metrics = measure_labels(bricks(4, 5, 12, 30), lateral_resistance=0.7)
+    assert (metrics.F_SF, metrics.F_LR, metrics.stones) == (1.0, 0.7, 22)
+    assert (metrics.width, metrics.height) == (150.0, 48.0)
+    assert (metrics.T_LEVEL, metrics.E_FLUSH) == (0.0, 0.0)
+    better_known = measure_labels(bricks(4, 5, 12, 30), stone_area_px=7000.0)
+    assert abs(better_known.F_SF - 7000 / 7200) < 1e-12
+    planned = measure_labels(bricks(4, 5, 12, 30), wall_px=(200.0, 60.0))
+    assert abs(planned.F_SF - 150 * 48 / (200 * 60)) < 1e-12
+    assert (planned.width, planned.height) == (200.0, 60.0)
+    assert abs(planned.E_FLUSH - 25 / np.mean([30] * 18 + [15] * 4)) < 1e-12
+
+
+def test_wedges_are_no_stones_but_joints_run_around_them():
+    labels = bricks(4, 5, 12, 30)
+    wedged = labels.copy()
+    wedged[40:44, 60:70] = 99
+    plain, metrics = measure_labels(labels), measure_labels(wedged, wedge_ids={99})
+    assert metrics.stones == plain.stones
+    assert abs(metrics.F_SF - (7200 - 40) / 7200) < 1e-12
+    assert metrics.T_LEVEL == 0.0
+
+
+@repeatable()
+@given(walls(max_px=40), st.integers(0, 9), st.integers(0, 9))
+def test_empty_space_around_the_wall_and_numbers_of_stones_change_nothing(labels, rows, cols):
+    padded = np.pad(labels, ((rows, 9 - rows), (cols, 9 - cols)))
+    assert measure_labels(padded) == measure_labels(labels)
+    ids, numbers = np.unique(labels, return_inverse=True)
+    shift = 0 if ids[0] == 0 else 1
+    renumbered = (numbers.reshape(labels.shape) + shift).astype(np.uint8)
+    assert measure_labels(renumbered) == measure_labels(labels)
+
+
+def test_a_wall_without_room_without_stones_and_with_too_few_for_paths():
+    for size in ((0.0, 80.0), (280.0, -1.0), (np.nan, 80.0), (280.0, np.inf), (1e9, 80.0)):
+        with pytest.raises(UsageError, match="E121"):
+            measure_labels(bricks(2, 2, 5, 8), wall_px=size)
+    metrics = measure_labels(np.ones((6, 6), np.uint32))
+    assert (metrics.F_AV, metrics.F_AH) == (None, None)
+    with pytest.raises(LabelImageError, match="E104"):
+        measure_labels(np.zeros((10, 10), np.uint32))
+
+
+@pytest.mark.parametrize(
+    "labels",
+    [
+        bricks(2, 2, 5, 8).astype(float),
+        bricks(2, 2, 5, 8) > 1,
+        -bricks(2, 2, 5, 8).astype(int),
+        np.ones((9, 9, 3), int),
+        np.ones(9, int),
+    ],
+    ids=["floats", "a mask", "below 0", "colours", "a line"],
+)
+def test_what_is_no_picture_of_ids(labels):
+    with pytest.raises(LabelImageError, match=r"E301 labels: .* is not a picture of ids"):
+        measure_labels(labels)
