@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
@@ -10,6 +10,7 @@ from drystone.kernels.boundary import EMPTY, boundary_of
 from drystone.kernels.contacts import contacts_in
 from drystone.kernels.patches import GROUND, MARGIN_PX, Patch, painted_patch, whole_patch
 from tests.naive import contacts as naive
+from tests.statics.walls import coursed, irregular
 from tests.strategies import dust_labels, label_images, masks, repeatable
 
 pictures = arrays(
@@ -116,6 +117,8 @@ skylines = steps.map(lambda up: under((np.cumsum(up) - min(np.cumsum(up)) + 1).t
 
 
 @given(labels=st.one_of(label_images(), skylines, skylines.map(np.rot90)))
+@example(irregular(0, 20, 90, 60))
+@example(coursed(1, 4, 120, gap_px=1))
 @repeatable(150)
 def test_contacts_equal_their_naive_twin(labels):
     """Runs are cut at corners, and left out is the ledge of a pixel at their ends."""
