@@ -1,7 +1,6 @@
 """The indices, each against its slow twin and on walls small enough to count (Eq. 3 to 11)."""
 
 import dataclasses
-import itertools
 from statistics import fmean
 
 import numpy as np
@@ -19,25 +18,15 @@ from drystone.indices import (
     left_neighbour,
     local_filling_ratio_at,
     neighbour_height_ratio,
-    shape_factor,
 )
 from drystone.kernels.spots import dice_score
 from drystone.model.landscape import Box, Landscape, view_box
-from drystone.model.pose import PosedStone
 from drystone.model.site import Site
-from drystone.model.stone import Stone
 from drystone.model.wall import Wall
-from drystone.poses import PoseBook
 from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
 from tests.naive import indices as naive
 from tests.naive import rays as naive_rays
 from tests.strategies import posed_on_walls, repeatable
-
-
-def test_an_upright_rectangle_has_one_and_a_turned_square_one_half():
-    square = Stone(1, np.ones((10, 10), bool))
-    assert shape_factor(PoseBook(0.3).pose(square, 90.0)) == pytest.approx(1.0)
-    assert shape_factor(PoseBook(0.3).pose(square, 45.0)) == pytest.approx(0.5)
 
 
 @repeatable(80)
@@ -88,36 +77,7 @@ def test_of_equals_the_higher_neighbour_and_the_first_joint_are_taken():
     assert joints_below(landscape, Box(15, 40, 8, 11), 0) == (None, None)
 
 
-def test_bonds():
-    for edges, box, share in (
-        ((0, 20, 40, 60), (10, 30), 0.5),  # running bond
-        ((0, 20, 40, 60), (20, 40), 0.0),  # stack bond
-        ((40, 60), (36, 56), 0.8),  # the end of the wall at 60 is no joint
-        ((0, 20), (4, 24), 0.8),  # nor is that at 0
-    ):
-        course = tuple(Box(a, b, 0, 10) for a, b in itertools.pairwise(edges))
-        landscape = Landscape(Wall.empty(Site(60, 30)).occupied, course)
-        assert interlocking_width_ratio(landscape, Box(*box, 10, 20), 5) == pytest.approx(share)
-
-
 EMPTY = Landscape.of(Wall.empty(Site(40, 20)))
-
-
-def test_slopes():
-    """Falling inwards is positive at both ends."""
-    for tops, x_c, col, slope in (
-        # Highest points: column 0 (outermost of two), and column 2, one px lower.
-        ((3, 3, 2, 1), 1.7, 0, 0.5),
-        ((3, 3, 2, 1), 1.7, 36, -0.5),
-        ((1, 2, 3, 3), 2.3, 36, 0.5),
-        ((9, 1), 0.75, 0, 1.0),  # clipped
-        ((3, 3, 3), 1.5, 0, 0.0),  # level
-        ((3,), 0.5, 0, 0.0),
-        ((1, 2, 3, 2, 1), 2.5, 0, 0.0),  # a peak exactly at the centroid slopes to neither side
-    ):
-        mask = np.arange(max(tops))[::-1, None] < np.array(tops)
-        posed = PosedStone(Stone(1, mask), 0.0, 1.0, mask, (x_c, 1.0))
-        assert inward_slope(EMPTY, posed, col) == pytest.approx(slope)
 
 
 def test_boundary_stones_are_nearer_to_an_end_than_the_narrowest_is_wide():
