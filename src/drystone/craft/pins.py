@@ -152,9 +152,8 @@ def least_wedge_loads(
 ) -> Mapping[int, float] | LimitStatus:
     """Return the least load that each wedge passes on while the wall stands by its own weight.
 
-    The forces between dry stones are not known from their weights alone.  For each wedge the
-    state of equilibrium within friction is found in which that wedge carries least; so 0 means
-    that the wall would stand without leaning on it.
+    For each wedge that state of equilibrium within friction counts in which it carries least; so 0
+    means that the wall would stand without leaning on it.
     """
     if all(block.fixed for block in model.blocks):
         return dict.fromkeys(sorted(wedge_ids), 0.0)

@@ -16,12 +16,9 @@ def held_by_upright_faces(
 ) -> tuple[int, ...] | None:
     """Name the blocks that fall when upright faces have no friction, in the order of the model.
 
-    Equilibrium asks only whether forces exist.  Upright faces can be pressed together as hard as it
-    takes to hold what is between them, by nothing but themselves, and the analysis says that the
-    wall stands; in the world nothing may have pressed them.
-
-    Returned are the blocks that move in the mechanism, then with these held fast those of the next
-    one, until the rest stands; None when a solver gave up.
+    Equilibrium asks only whether forces exist, not what would press such faces together
+    (docs/analysis.md).  Returned are the blocks that move in the mechanism, then with these held
+    fast those of the next one, until the rest stands; None when a solver gave up.
     """
     smooth = replace(model, interfaces=slippery(model.interfaces, model.mu))
     fallen: set[int] = set()
