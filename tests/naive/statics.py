@@ -39,11 +39,11 @@ def contact_matrices(model):
     return normal, tangent
 
 
-def cone_program(model):
-    """Matrix and right-hand side of the tilting table.
+def alphas_by_linprog(model):
+    """alpha to the left and right, each from the start; None when the blocks do not stand.
 
-    Column 0 is alpha, then come the two edges of the friction cone of every contact point; mean
-    weight and mean area of the blocks are 1.
+    Unknown are alpha and the forces along both edges of the friction cone of every contact point;
+    mean weight and mean area of the blocks are 1.
     """
     normal, tangent = contact_matrices(model)
     mu = np.array([model.friction(i) for i in model.interfaces for _ in i.points])
@@ -53,12 +53,7 @@ def cone_program(model):
     edges = np.stack((normal + mu * tangent, normal - mu * tangent), axis=2)
     matrix = np.column_stack((live, edges.reshape(len(dead), -1)))
     matrix[2::3] /= np.mean([block.area for block in model.blocks]) ** 0.5
-    return csc_array(matrix), dead
-
-
-def alphas_by_linprog(model):
-    """alpha to the left and right, each from the start; None when the blocks do not stand."""
-    matrix, dead = cone_program(model)
+    matrix = csc_array(matrix)
     costs = np.zeros(matrix.shape[1])
     bounds = [(None, None)] + [(0, None)] * (matrix.shape[1] - 1)
     tight = {"primal_feasibility_tolerance": 1e-9, "dual_feasibility_tolerance": 1e-9}
