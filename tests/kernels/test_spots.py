@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from drystone.kernels import spots
 from drystone.kernels.bits import bit_landscape
-from drystone.kernels.lowering import lowered_positions, skyline
+from drystone.kernels.lowering import skyline
 from drystone.kernels.rays import RaySums
 from drystone.kernels.silhouette import silhouette
 from drystone.kernels.spots import (
@@ -27,7 +27,7 @@ from drystone.kernels.spots import (
 )
 from tests.naive import placement as naive
 from tests.naive.rays import local_filling_ratio
-from tests.strategies import landscapes, masks, posed_on_walls, repeatable
+from tests.strategies import landscapes, masks, repeatable
 
 
 @repeatable(80)
@@ -53,39 +53,6 @@ def test_high_walls():
 
 wanted = st.sampled_from([1, 2, 5, 1000])
 WEIGHTS = [(0, 0, 0, 0), (0, 0, -0.5, 0), (0, -0.5, 0, 0), (1.6, 0.5, 0.7, 0.25), (0, 1, 1, -0.5)]
-
-
-@repeatable(40)
-@given(scene=posed_on_walls())
-def test_eq12_is_that_of_every_position_on_its_own(scene):
-    wall, posed, _, _ = scene
-    at = naive.resting_positions(wall.occupied, posed.mask)[:40]
-    rays, x = RaySums(wall.occupied), posed.anchor[0]
-    beta = 0.7001  # which no score is
-    merits = eq12_merits(np.array(at), silhouette(posed.mask), rays, wall.height_px, x, beta)
-    expected = [naive.eq12(wall.occupied, posed.mask, x, place, beta) for place in at]
-    assert merits == pytest.approx(expected, abs=1e-12)
-
-
-@repeatable(40)
-@given(scene=posed_on_walls())
-def test_void_gap_height_and_end_are_counted_pixel_by_pixel(scene):
-    wall, posed, _, _ = scene
-    outline, top = silhouette(posed.mask), skyline(wall.occupied)
-    positions = lowered_positions(top, outline, wall.site.height_px)
-    rays = RaySums(wall.occupied)
-    parts = [
-        (
-            (wall.site.height_px - row - posed.height_px) / posed.height_px,
-            naive.void_below(wall.occupied, posed.mask, (row, col)) / posed.area_px,
-            min(1.0, naive.gap_beside(wall.occupied, posed.mask, (row, col)) / posed.area_px),
-            col / wall.site.width_px,
-        )
-        for row, col in positions.tolist()
-    ]
-    for weights in (*np.eye(4), (3.0, 1.0, 2.0, 4.0)):
-        merits = snug_merits(positions, outline, top, rays, SnugWeights(*weights))
-        assert merits == pytest.approx(-np.array(parts).reshape(-1, 4) @ weights)
 
 
 def test_the_threshold_itself_counts_as_below():
