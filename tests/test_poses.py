@@ -58,17 +58,11 @@ def test_quarter_turns_of_a_pose_are_exact_and_not_mirrored():
 
 @repeatable(40)
 @given(mask=blobs(max_px=30), angle=st.floats(-180, 180), scale=SCALES)
-def test_the_anchor_is_where_the_centroid_of_the_turned_stone_falls(mask, angle, scale):
-    """The area is kept within one percent or two px."""
-    stone = Stone(5, mask, left_px=30, bottom_px=40)
-    posed = PoseBook(scale).pose(stone, angle)
+def test_the_area_of_a_pose_is_kept_within_one_percent_or_two_px(mask, angle, scale):
+    posed = PoseBook(scale).pose(Stone(5, mask, left_px=30, bottom_px=40), angle)
     area = int(mask.sum()) * scale**2
     assert abs(posed.area_px - area) <= max(0.01 * area, 2.0)
     assert [(a * 64).is_integer() for a in posed.anchor] == [True, True]
-    window = (-2, -2, posed.width_px + 2, posed.height_px + 2)
-    exact = naive.coverage(mask, stone.local_centroid, posed.angle_deg, scale, posed.anchor, window)
-    decided = abs(exact - 0.5) > 1 / max(4, math.ceil(1 / scale))
-    assert np.array_equal(np.pad(posed.mask, 2)[decided], exact[decided] >= 0.5)
 
 
 @repeatable(40)
