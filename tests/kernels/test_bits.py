@@ -28,7 +28,7 @@ def test_rows_of_several_words_and_runs_longer_than_one(stretch, occupied, mask,
     wide = np.roll(np.repeat(occupied, stretch, axis=1), shift, axis=1)
     stone = np.repeat(mask, stretch, axis=1)[:, : mask.shape[1] * stretch - cut % stretch]
     fits = stone.shape[0] <= wide.shape[0] and stone.shape[1] <= wide.shape[1]
-    expected = naive.resting_by_areas(wide, stone) if fits else []
+    expected = naive.resting_by_areas(wide, stone, naive.areas_by_fft) if fits else []
     found = resting(wide, stone)
     assert (found.dtype, found.flags.c_contiguous) == (np.int64, True)
     assert found.tolist() == [list(at) for at in expected]
@@ -48,7 +48,7 @@ def test_long_masks_between_thin_posts_under_a_roof(posts, length, heel, foot):
     mask = np.ones((3, length), bool)
     mask[1:, :heel] = mask[1:, heel + 3 * foot :] = False
     mask[1:, min(heel, length - 1)] = True
-    expected = naive.resting_by_areas(occupied, mask)
+    expected = naive.resting_by_areas(occupied, mask, naive.areas_by_fft)
     assert resting(occupied, mask).tolist() == [list(at) for at in expected]
 
 

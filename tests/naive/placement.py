@@ -1,11 +1,17 @@
 """Slow, obvious twins of placement: every position of the image, one after the other (§3.6)."""
 
-import numpy as np
-from scipy.signal import fftconvolve
+from collections.abc import Callable
 
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage, signal
+
+from drystone.kernels.raster import Mask
 from tests.naive import indices
 from tests.naive.overlap import lowered, overlaps
 from tests.naive.rays import filling_on_images
+
+OverlapAreas = Callable[[Mask, Mask], NDArray[np.int64]]
 
 
 def all_positions(occupied, mask):
@@ -70,15 +76,26 @@ def void_below(occupied, mask, at):
     return empty
 
 
-def resting_by_areas(occupied, mask):
-    """`resting_positions` from two maps: of the landscape, and of all of it a row higher.
+def areas_by_convolution(scene, mask):
+    """Overlapping pixels at every position of a mask, by convolution of the whole image (§3.6)."""
+    stone = mask[::-1, ::-1].astype(np.int64)
+    areas = ndimage.convolve(scene.astype(np.int64), stone, mode="constant")
+    # The middle of the stone, in an even number of pixels the one before it, is at each pixel.
+    top, left = (mask.shape[0] - 1) // 2, (mask.shape[1] - 1) // 2
+    rows, cols = scene.shape[0] - mask.shape[0] + 1, scene.shape[1] - mask.shape[1] + 1
+    return np.asarray(areas[top : top + max(0, rows), left : left + max(0, cols)])
 
-    Overlapping pixels are counted by Fourier transforms; the mask is not larger than the scene.
-    """
+
+def areas_by_fft(scene, mask):
+    """The same by Fourier transforms; the mask is not larger than the scene."""
+    areas = signal.fftconvolve(scene.astype(float), mask[::-1, ::-1].astype(float), mode="valid")
+    return np.asarray(np.rint(areas), np.int64)
+
+
+def resting_by_areas(occupied, mask, areas):
+    """`resting_positions` from two maps: of the landscape, and of all of it a row higher."""
     raised = np.vstack([occupied[1:], np.ones((1, occupied.shape[1]), bool)])
-    stone = mask[::-1, ::-1].astype(float)
-    areas = [np.rint(fftconvolve(scene * 1.0, stone, mode="valid")) for scene in (occupied, raised)]
-    free, rests = areas[0] == 0, areas[1] > 0
+    free, rests = areas(occupied, mask) == 0, areas(raised, mask) > 0
     return [(int(row), int(col)) for row, col in np.argwhere(free & rests)]
 
 

@@ -100,7 +100,7 @@ class SlowPlanner:
     def tried(self, posed, sample):
         """Place, stabilise and judge one stone; None when it can stand nowhere."""
         occupied = self.labels > 0
-        positions = placement.resting_by_areas(occupied, posed.mask)
+        positions = placement.resting_by_areas(occupied, posed.mask, placement.areas_by_convolution)
         beta = self.settings.placement.beta
         spot = placement.best_by_eq12(occupied, posed.mask, posed.anchor[0], positions, beta)
         if spot is None:

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import shapely
 from scipy import ndimage
+from shapely import affinity
 
 from drystone.kernels.raster import rotation
 
@@ -17,6 +18,22 @@ def polygon_of(mask):
         for row, col in zip(*np.nonzero(mask), strict=True)
     ]
     return shapely.union_all(squares)
+
+
+def coverage(mask, centre, angle_deg, scale, phase, window):
+    """Covered share of every pixel of a window (left, bottom, right, top), row 0 at the top."""
+    polygon = affinity.translate(polygon_of(mask), -centre[0], -centre[1])
+    polygon = affinity.rotate(polygon, angle_deg, origin=(0, 0))
+    polygon = affinity.scale(polygon, scale, scale, origin=(0, 0))
+    polygon = affinity.translate(polygon, *phase)
+    left, bottom, right, top = window
+    cells = [
+        shapely.box(x, y, x + 1, y + 1)
+        for y in range(top - 1, bottom - 1, -1)
+        for x in range(left, right)
+    ]
+    areas = shapely.area(shapely.intersection(np.array(cells), polygon))
+    return np.asarray(areas, float).reshape(top - bottom, right - left)
 
 
 def second_moment_eccentricity(mask):
