@@ -136,8 +136,11 @@ class BuiltWall:
             if one not in wall.laid or _stays(wall, one, loads):  # it may have fallen with another
                 continue
             # Upright faces may carry a part of what lies on it.
-            beds = {i: bed._replace(points=bed.faced) for i, bed in wall.beds.items()}
-            faced = replace(wall, beds={**beds, one: wall.beds[one]})
+            beds = {
+                i: bed if bed.faced is bed.points or i == one else bed._replace(points=bed.faced)
+                for i, bed in wall.beds.items()
+            }
+            faced = replace(wall, beds=beds)
             if _stays(faced, one, _loads(faced, [one])):
                 continue
             after = _rolled(wall, one, loads[one])
@@ -209,7 +212,7 @@ def _loads(wall: BuiltWall, blocks: Iterable[int]) -> dict[int, Load]:
 def _carrying(on: Sequence[Bearing], x: float) -> tuple[Bearing, Bearing]:
     """Return the points left and right of a load; one beside all hangs on the last, twice."""
     i = bisect(on, (x,))
-    return on[max(i - 1, 0)], on[min(i, len(on) - 1)]
+    return on[i - 1 if i else 0], on[i if i < len(on) else -1]
 
 
 def _stays(wall: BuiltWall, block: int, loads: Mapping[int, Load]) -> bool:

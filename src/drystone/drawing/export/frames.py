@@ -10,7 +10,7 @@ from functools import cached_property
 from io import BytesIO
 
 import numpy as np
-from PIL import Image, ImageDraw
+from PIL import Image, ImageChops, ImageDraw
 
 from drystone.drawing.assembly import Assembly
 from drystone.drawing.drawing import Drawable, Lines, Surface, drawing_of_assembly
@@ -91,28 +91,28 @@ class Film:
         big = Image.new("RGB", (width * FINER, height * FINER), "white")
         self._paint(big, drawing.layers("SITE"))
         blocks = (item for item in drawing.items if isinstance(item, Surface) and item.step)
+        # Numbers on white, which pictures are multiplied by: each is written once.
+        written = Image.new("RGB", self.size_px, "white")
         numbers, parts = drawing.layers("NUMBERS"), self.assembly.parts
-        for placed, (block, part) in enumerate(zip(blocks, parts, strict=True), 1):
+        for block, number, part in zip(blocks, numbers, parts, strict=True):
             fresh = big.copy()
+            paint(written, [number], self.view)
             stone = part.kind == "stone"
             self._paint(fresh, [replace(block, fill=PLACING_COLOUR) if stone else block])
             caption = f"step {part.step} of {len(parts)}"
             if part.under is not None:
                 # Numbers in the picture are steps, so those in words are steps, too.
                 caption += f": wedge under {self.assembly.part(part.under).step}"
-            yield self._finished(fresh, numbers[:placed], caption)
+            yield self._finished(fresh, written, caption)
             self._paint(big, [block])
         stones = len(list(self.assembly.stones))
-        yield self._finished(big, numbers, f"{stones} stones, {len(parts) - stones} wedges")
+        yield self._finished(big, written, f"{stones} stones, {len(parts) - stones} wedges")
 
     def _paint(self, big: Image.Image, items: tuple[Drawable, ...] | list[Surface]) -> None:
         paint(big, items, replace(self.view, finer=FINER), px_per_pt=5.0)
 
-    def _finished(
-        self, big: Image.Image, numbers: tuple[Drawable, ...], caption: str
-    ) -> Image.Image:
-        picture = big.reduce(FINER)
-        paint(picture, numbers, self.view)
+    def _finished(self, big: Image.Image, written: Image.Image, caption: str) -> Image.Image:
+        picture = ImageChops.multiply(big.reduce(FINER), written)
         place = (MARGIN_PX, self.size_px[1] - CAPTION_PX / 2)
         ImageDraw.Draw(picture).text(place, caption, OUTLINE_COLOUR, font(16), anchor="lm")
         return picture
