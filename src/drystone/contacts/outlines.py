@@ -1,7 +1,7 @@
 """Outlines of the stones of a label image that share their joints (DESIGN 4.8, 4.9)."""
 
-from collections import Counter, defaultdict
-from collections.abc import Iterable, Mapping
+from collections import defaultdict
+from collections.abc import Mapping, Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -51,19 +51,33 @@ def outlines_of_labels(labels: Labels) -> dict[int, Points]:
     rings = _rings(labels)
     junctions = _junctions(labels)
     pieces = {block: _pieces(ring, junctions) for block, ring in rings.items()}
-    fits = {
-        piece: fitted_lines(np.array(piece, float), OUTLINE_TOLERANCE_PX)
-        for piece in dict.fromkeys(_key(piece) for mine in pieces.values() for piece in mine)
-    }
-    while True:
-        outlines = _assembled(rings, pieces, fits)
-        unsound = [block for block in rings if not _is_sound(outlines[block], rings[block])]
+    users = defaultdict[RingPiece, list[int]](list)
+    for block, mine in pieces.items():
+        for piece in mine:
+            users[_key(piece)].append(block)
+    ends = defaultdict[Node, list[tuple[RingPiece, int]]](list)  # which pieces end where
+    for piece in users:
+        ends[piece[0]].append((piece, 0))
+        ends[piece[-1]].append((piece, -1))
+    fits = {piece: fitted_lines(np.array(piece, float), OUTLINE_TOLERANCE_PX) for piece in users}
+    drawn, outlines, unsound = dict[RingPiece, Points](), dict[int, Points](), set[int]()
+    anew = set(users)
+    while anew:
+        drawn |= {piece: _drawn(piece, ends, fits) for piece in anew}
+        for block in {block for piece in anew for block in users[piece]}:
+            mine, ring = pieces[block], rings[block]
+            free = [len(users[_key(p)]) == 1 and _key(p) in fits for p in mine]
+            outlines[block] = _assembled(mine, drawn, free, ring)
+            unsound.discard(block)
+            if not _is_sound(outlines[block], ring):
+                unsound.add(block)
         # The shortest piece first: two junctions close together are most often the reason.
         keys = [sorted((_key(p) for p in pieces[block]), key=len) for block in unsound]
         blocky = {next((key for key in mine if key in fits), None) for mine in keys} - {None}
-        if not blocky:  # pixel edges may pass one corner twice, but never cross
-            return outlines
         fits = {piece: fit for piece, fit in fits.items() if piece not in blocky}
+        # What meets them is drawn anew; pixel edges may pass one corner twice, but never cross.
+        anew = {piece for key in blocky if key for i in (0, -1) for piece, _ in ends[key[i]]}
+    return {block: outlines[block] for block in rings}
 
 
 def model_of_traced(
@@ -120,58 +134,47 @@ def _key(piece: RingPiece) -> RingPiece:
 
 
 def _assembled(
-    rings: Mapping[int, RingPiece],
-    pieces: Mapping[int, list[RingPiece]],
+    pieces: Sequence[RingPiece],
+    drawn: Mapping[RingPiece, Points],
+    free: Sequence[bool],
+    ring: RingPiece,
+) -> Points:
+    """Join the pieces around a stone to its outline.
+
+    Junctions that move take area from one stone to another; a free side gives it back.
+    """
+    lines = [drawn[_key(p)] if p == _key(p) else drawn[_key(p)][::-1] for p in pieces]
+    movable = [i for i, line in enumerate(lines) if free[i] and len(line) > 2]
+    if movable:
+        longest = max(movable, key=lambda i: len(pieces[i]))
+        lost = _area(_joined(lines)) - _area(np.array(ring, float))
+        lines[longest] = with_area(lines[longest], lines[longest], -lost)
+    return _joined(lines)
+
+
+def _drawn(
+    piece: RingPiece,
+    ends: Mapping[Node, Sequence[tuple[RingPiece, int]]],
     fits: Mapping[RingPiece, Fit],
-) -> dict[int, Points]:
-    """Join pieces to outlines; those without a fit keep their pixel edges."""
-    users = Counter(_key(piece) for mine in pieces.values() for piece in mine)
-    drawn = _drawn(users, fits)
-    outlines = {}
-    for block, mine in pieces.items():
-        lines = [drawn[_key(p)] if p == _key(p) else drawn[_key(p)][::-1] for p in mine]
-        # Junctions that move take area from one stone to another; a free side gives it back.
-        free = [i for i, p in enumerate(mine) if users[_key(p)] == 1 and len(lines[i]) > 2]
-        free = [i for i in free if _key(mine[i]) in fits]
-        if free:
-            longest = max(free, key=lambda i: len(mine[i]))
-            lost = _area(_joined(lines)) - _area(np.array(rings[block], float))
-            beside = lines[longest]
-            lines[longest] = with_area(beside, beside, -lost)
-        outlines[block] = _joined(lines)
-    return outlines
-
-
-def _drawn(pieces: Iterable[RingPiece], fits: Mapping[RingPiece, Fit]) -> dict[RingPiece, Points]:
-    """Simplify every piece once."""
-    meeting = defaultdict(list)
-    pinned = set()
-    for piece in pieces:
-        if piece not in fits:
-            pinned |= {piece[0], piece[-1]}
-            continue
-        _, lines = fits[piece]
-        meeting[piece[0]].append(lines[0])
-        meeting[piece[-1]].append(lines[-1])
-    drawn = {}
-    for piece in pieces:
-        nodes = np.array(piece, float)
-        if piece not in fits:
-            # Without the pixel corners that lie between two others on one line.
-            step = np.diff(nodes, axis=0)
-            turns = (step[1:] != step[:-1]).any(axis=1)
-            drawn[piece] = nodes[np.concatenate([[True], turns, [True]])]
-            continue
-        cuts, lines = fits[piece]
-        first, last = (
-            nodes[i] if piece[i] in pinned else meeting_point(meeting[piece[i]], nodes[i])
-            for i in (0, -1)
-        )
-        inner = [
-            meeting_point(list(lines[i - 1 : i + 1]), nodes[cuts[i]]) for i in range(1, len(lines))
-        ]
-        drawn[piece] = with_area(np.array([first, *inner, last]), nodes)
-    return drawn
+) -> Points:
+    """Simplify a piece; without a fit it keeps its pixel edges, and what meets it its corner."""
+    nodes = np.array(piece, float)
+    if piece not in fits:
+        # Without the pixel corners that lie between two others on one line.
+        step = np.diff(nodes, axis=0)
+        turns = (step[1:] != step[:-1]).any(axis=1)
+        return np.asarray(nodes[np.concatenate([[True], turns, [True]])])
+    cuts, lines = fits[piece]
+    first, last = (
+        meeting_point([fits[other][1][end] for other, end in ends[piece[i]]], nodes[i])
+        if all(other in fits for other, _ in ends[piece[i]])
+        else nodes[i]
+        for i in (0, -1)
+    )
+    inner = [
+        meeting_point(list(lines[i - 1 : i + 1]), nodes[cuts[i]]) for i in range(1, len(lines))
+    ]
+    return with_area(np.array([first, *inner, last]), nodes)
 
 
 def _joined(lines: list[Points]) -> Points:
