@@ -63,6 +63,10 @@ def test_analyse_draws(tmp_path, run):
     assert "W302 1 of 2 blocks touch neither the ground" in ran.err
     measured = run("measure", floating, "--json")
     assert (measured.json()["F_LR"], "W302" in measured.err) == (None, True)
+    labels[5:15, 7:17], labels[5:10, 2:7] = 2, 0
+    write_labels(labels, floating)
+    measured = run("measure", floating, "--json")
+    assert (measured.json()["F_LR"], "The wall does not stand." in measured.err) == (None, True)
     # There are no forces that hold it: none of another wall may stay.
     assert {path.name for path in out.iterdir()} == {n for n in ANALYSED if "forces" not in n}
     assert (out / "mechanism_left.png").read_bytes() != before

@@ -172,7 +172,14 @@ MALFORMED = [
     {**PAIR, "interfaces": [{"between": [1, 0], "points": [], "normal": [0, 1]}]},
     {**PAIR, "interfaces": [{"between": [1, 0], "points": [[0, 0]], "normal": [0, 0]}]},
     {**PAIR, "interfaces": [{"between": [1, 0], "points": [[0, 0]]}]},
+    {**PAIR, "blocks": [{"id": 1, "polygon": square(0, 0)}]},
 ]
+
+
+def bed(pair, y, normal, reach=0):
+    """Two blocks, of which a bed is told."""
+    points = [[-reach, y], [2 + reach, y]]
+    return {**PAIR, "interfaces": [{"between": pair, "points": points, "normal": normal}]}
 
 
 @pytest.mark.parametrize(
@@ -190,7 +197,11 @@ MALFORMED = [
         (one_block(polygon=square(0, 1e10, 1)), "E303", "origin"),
         ({**PAIR, "mu": -1}, "E302", ""),
         ({**PAIR, "mu": 10**400}, "E302", ""),
-        ({"blocks_xywh": [[0, -1, 1, 3]]}, "E304", ""),
+        ({"blocks_xywh": [[0, -1, 1, 3]]}, "E304", "up"),
+        (bed([1, 0], 0, [0, -1]), "E303 .*out of block 1", "round"),
+        (bed([2, 1], 1, [0, -1]), "E303 .*out of block 2", "round"),
+        (bed([1, 0], 0, [0, 1], 5), "E303 .*up to 5 from block 1", "both touch"),
+        (bed([2, 1], 0, [0, 1]), "E303 .*up to 1 from block 2", "both touch"),
         # Bars that cross, of which no corner is inside of the other.
         ({"blocks_xywh": [[0, 1, 3, 1], [1, 0, 1, 3]]}, "E304 .*blocks 1 and 2 overlap", ""),
         (
@@ -217,6 +228,17 @@ def test_a_corner_at_which_an_edge_goes_straight_on_is_none():
     # A turn of a thousandth is a corner.
     bent = [[0, 0], [6, 0], [6, 1], [3, 1.001], [0, 1]]
     assert len(polygons_from_json(one_block(polygon=bent))[1]) == 6
+
+
+def test_a_bed_is_where_both_blocks_are_and_carries_the_first():
+    for told in (bed([1, 0], 0, [0, 1]), bed([2, 1], 1.05, [0, 2]), bed([1, 2], 1, [0, -1])):
+        assert len(model_from_json(told).interfaces) == 1
+
+
+def test_what_is_fixed_may_reach_below_the_ground():
+    footing = {"id": 1, "polygon": square(0, -2), "fixed": True}
+    model = model_from_json({"blocks": [footing, {"id": 2, "polygon": square(0, 0)}]})
+    assert (2, 1) in {(face.block, face.other) for face in model.interfaces}
 
 
 def test_points_of_an_interface_run_along_it():

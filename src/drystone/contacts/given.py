@@ -24,6 +24,9 @@ LARGEST_RATIO = 1e6
 STRAIGHT = 1e-12
 """A corner this far from the line between its neighbours, in sizes of the block, is none."""
 
+ASTRAY = 0.1
+"""Points of an interface may lie so far from its blocks, over their size: mortar may be between."""
+
 RELATIVE_TOLERANCE = 1e-5
 """Gaps and overlaps up to this share of the size of the smaller block, the root of its area, count
 as contact: coordinates are written with six digits or so."""
@@ -85,10 +88,11 @@ def model_from_json(data: Mapping[str, Any]) -> RigidBlockModel:
         cure = "What has no weight of its own is a load: see --dead. What does not move is fixed."
         raise bad(what, "blocks", cure)
     if "interfaces" in data:
-        interfaces = read_interfaces(read_list(data, "interfaces"), ids)
+        interfaces = read_interfaces(read_list(data, "interfaces"), corners)
     else:
         sizes = {block.id: sqrt(block.area) for block in blocks}
-        found = [*_on_ground(corners, sizes), *_among_blocks(corners, sizes)]
+        fixed = {block.id for block in blocks if block.fixed}
+        found = [*_on_ground(corners, sizes, fixed), *_among_blocks(corners, sizes)]
         interfaces = tuple(sorted(found, key=lambda face: (face.block, face.other)))
     model = RigidBlockModel(blocks, interfaces, read_mu(data, "mu", 0.58))
     if "mu_head" in data:
@@ -105,6 +109,8 @@ def polygons_from_json(data: Mapping[str, Any]) -> dict[int, Points]:
 
 def _given_blocks(data: Mapping[str, Any]) -> list[tuple[Block, Points]]:
     if "blocks_xywh" in data:
+        if "blocks" in data:
+            raise bad("there are both 'blocks_xywh' and 'blocks'.", "block model", "Give one.")
         given = []
         for number, row in enumerate(read_list(data, "blocks_xywh"), start=1):
             where = f"blocks_xywh, block {number}"
@@ -203,13 +209,17 @@ def _measured(block: Block, polygon: Points) -> Block:
     return replace(block, area=area, centroid=(cx, cy))
 
 
-def _on_ground(corners: dict[int, Points], sizes: dict[int, float]) -> list[Interface]:
+def _on_ground(
+    corners: dict[int, Points], sizes: dict[int, float], fixed: Collection[int]
+) -> list[Interface]:
     found = []
     for block, polygon in corners.items():
         tolerance = RELATIVE_TOLERANCE * sizes[block]
         depth = -float(polygon[:, 1].min())
-        if depth > tolerance:
-            raise _too_deep(f"block {block} reaches {depth:g} below the ground, y = 0.")
+        if depth > tolerance and block not in fixed:  # a footing may
+            what = f"block {block} reaches {depth:g} below the ground, y = 0."
+            cure = "Move the wall up, or say that the block is fixed."
+            raise InputError("E304", what, where="block model", cure=cure)
         if depth >= -tolerance:
             left, right = polygon[:, 0].min() - sizes[block], polygon[:, 0].max() + sizes[block]
             ground = np.array([[right, 0.0], [left, 0.0]])
@@ -236,7 +246,8 @@ def _among_blocks(corners: dict[int, Points], sizes: dict[int, float]) -> list[I
             other, tolerance = ids[low], float(min(reach[high], reach[low]))
             depth = overlap_depth(shape, shapes[low])
             if depth > tolerance:
-                raise _too_deep(f"blocks {other} and {block} overlap by {depth:g}.")
+                what = f"blocks {other} and {block} overlap by {depth:g}."
+                raise InputError("E304", what, where="block model", cure="Move them apart.")
             found += touching_interfaces(block, corners[block], other, corners[other], tolerance)
     return found
 
@@ -316,10 +327,6 @@ def _in_edge_frames(along: Points, start: Points, points: Points) -> tuple[Point
     return s[:, :, 0], h
 
 
-def _too_deep(what: str) -> InputError:
-    return InputError("E304", what, where="block model", cure="Move them apart.")
-
-
 def bad(what: str, where: str, cure: str) -> InputError:
     """Return the error (E303) for what is no block model."""
     return InputError("E303", what, where=where, cure=cure)
@@ -377,12 +384,13 @@ def with_pair_friction(
     return replace(model, interfaces=tuple(faces))
 
 
-def read_interfaces(entries: Sequence[Any], ids: Collection[int]) -> tuple[Interface, ...]:
-    """Read where blocks touch."""
+def read_interfaces(entries: Sequence[Any], corners: Mapping[int, Points]) -> tuple[Interface, ...]:
+    """Read where blocks of some outlines touch; E303 where they do not lie so."""
+    shapes = {block: shapely.Polygon(outline) for block, outline in corners.items()}
     found = []
     for place, entry in enumerate(entries):
         where = f"interfaces, entry {place + 1}"
-        block, other = _between(entry, ids, where)
+        block, other = _between(entry, corners, where)
         if block == GROUND:
             raise bad("the ground is its first block.", where, "Name it second.")
         points = read_numbers(entry.get("points"), (-1, 2), where)
@@ -392,6 +400,20 @@ def read_interfaces(entries: Sequence[Any], ids: Collection[int]) -> tuple[Inter
             raise bad("it has no points or no normal.", where, "Give both.")
         mu = read_mu(entry, "mu", 0.0) if "mu" in entry else None
         x, y = (normal / length).tolist()
+        for body in {block, other} - {GROUND}:
+            away = float(shapely.distance(shapes[body], shapely.points(points)).max())
+            if away > ASTRAY * sqrt(shapes[body].area):
+                cure = "Give points at which both touch."
+                raise bad(f"its points lie up to {away:.3g} from block {body}.", where, cure)
+        step = 0.1 * ASTRAY * sqrt(shapes[block].area) * np.array((x, y))
+        ahead, behind = shapely.points(points + step), shapely.points(points - step)
+
+        def nearer(body: int, here: Points, there: Points) -> bool:
+            one, other = (shapely.distance(shapes[body], at).sum() for at in (here, there))
+            return bool(one < other)
+
+        if nearer(block, behind, ahead) and (other == GROUND or nearer(other, ahead, behind)):
+            raise bad(f"its normal points out of block {block}.", where, "Turn it round.")
         if len(points) > 2:  # others go by the first and the last one as its ends
             points = points[np.argsort(points @ (y, -x), kind="stable")]
         found.append(Interface(block, other, points, (x, y), mu))

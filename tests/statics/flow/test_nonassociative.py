@@ -53,6 +53,12 @@ def test_a_single_start_finds_an_answer_where_equal_steps_need_many_rounds(seed,
     assert result.check.holds
 
 
+def test_no_load_has_no_sign():
+    pair = boxes([0, 0, 1, 1], [0.5, 1, 1, 1])  # it just stands
+    alphas = nonassociative_load(pair, "right").answers
+    assert [math.copysign(1.0, alpha) for alpha in alphas] == [1.0] * len(alphas) != []
+
+
 def test_the_same_every_time_with_a_check_that_holds():
     model = model_from_labels(irregular(3, 8, 60, 40), 0.58).model
     first, second = (nonassociative_load(model, "right") for _ in range(2))

@@ -74,8 +74,9 @@ def _measured(wall: GivenWall, labels: Labels, arguments: argparse.Namespace) ->
     else:
         model = model_from_labels(labels, mu).model
     resistance = lateral_resistance(model)
-    loose = None if resistance.stable else unsupported(model, wall)
-    note(None if loose is None else f"F_LR is not defined. {loose}")
+    if not resistance.stable:
+        why = "The solver gave up." if resistance.failed else "The wall does not stand."
+        note(f"F_LR is not defined. {unsupported(model, wall) or why} See drystone analyse.")
     return measure_labels(
         labels,
         wall_px=wall_px,

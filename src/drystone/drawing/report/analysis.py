@@ -66,7 +66,9 @@ def _write_report(folder: Path, card: Card, loads: Loads, per_unit_m: float | No
     wall, resistance = card.wall, card.resistance
     shapes, model = wall.shapes, wall.model
     curve = friction_curve(model, loads)
-    axes = plot_friction(curve, model.mu, slides_at_mu=card.load_case == content.TILTING)
+    # On level ground that is; what is fixed may be a ramp.
+    level = card.load_case == content.TILTING and not any(block.fixed for block in model.blocks)
+    axes = plot_friction(curve, model.mu, slides_at_mu=level)
     save(axes.figure, folder / analysis.FRICTION)
     unit: Literal["px", "m", "units"] = "units" if wall.names.noun == "block" else "px"
     if per_unit_m is not None:

@@ -180,6 +180,8 @@ class Checked:
             return "is valid, but the engine contradicts it"
         metrics = self.report.metrics
         stands = metrics is not None and metrics.F_LR is not None
+        if stands and self.plan.metrics.F_LR_coulomb == 0.0:
+            return "is valid, and the wall stands, but let go it can fall"
         return "is valid, and the wall stands" if stands else "is valid"
 
     def rows(self) -> list[tuple[str, str]]:

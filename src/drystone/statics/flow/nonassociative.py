@@ -259,7 +259,7 @@ def _searched(
     for method, needed, found in search.attempts():
         rounds += needed
         if found is not None:
-            alpha = 0.0 if -STANDING <= found.alpha < 0.0 else found.alpha
+            alpha = 0.0 if -STANDING <= found.alpha <= 0.0 else found.alpha
             # The forces are admissible with associated flow too: what is above is rounding.
             most = alpha if associative.alpha is None else associative.alpha
             state = replace(found, alpha=min(alpha, most))
