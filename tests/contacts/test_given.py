@@ -231,8 +231,8 @@ def test_a_corner_at_which_an_edge_goes_straight_on_is_none():
 
 
 def test_a_bed_is_where_both_blocks_are_and_carries_the_first():
-    for told in (bed([1, 0], 0, [0, 1]), bed([2, 1], 1.05, [0, 2]), bed([1, 2], 1, [0, -1])):
-        assert len(model_from_json(told).interfaces) == 1
+    for one in (bed([1, 0], 0, [0, 1]), bed([2, 1], 1.05, [0, 2]), bed([1, 2], 1, [0, -1])):
+        assert len(model_from_json(one).interfaces) == 1
 
 
 def test_what_is_fixed_may_reach_below_the_ground():
