@@ -77,7 +77,7 @@ _parser = cache(build_parser)
 for _name in ("measure", "analyse", "craft", "check", "export"):
     import_module(f"drystone.cli.commands.{_name}")
 for _name in _EXPORTS:
-    import_module(f"drystone.drawing.export.{EXPORTERS[_name].made_by.partition(':')[0]}")
+    import_module(f"drystone.drawing.export.{EXPORTERS[_name].module}")
 
 
 def command(*words: object) -> None:

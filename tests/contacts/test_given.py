@@ -7,7 +7,7 @@ import shapely.ops
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from drystone.contacts.given import model_from_json, polygons_from_json
+from drystone.contacts.given import model_from_json, polygons_from_json, refuse_astray
 from drystone.errors import InputError
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import GROUND
@@ -198,10 +198,6 @@ def bed(pair, y, normal, reach=0):
         ({**PAIR, "mu": -1}, "E302", ""),
         ({**PAIR, "mu": 10**400}, "E302", ""),
         ({"blocks_xywh": [[0, -1, 1, 3]]}, "E304", "up"),
-        (bed([1, 0], 0, [0, -1]), "E303 .*out of block 1", "round"),
-        (bed([2, 1], 1, [0, -1]), "E303 .*out of block 2", "round"),
-        (bed([1, 0], 0, [0, 1], 5), "E303 .*up to 5 from block 1", "both touch"),
-        (bed([2, 1], 0, [0, 1]), "E303 .*up to 1 from block 2", "both touch"),
         # Bars that cross, of which no corner is inside of the other.
         ({"blocks_xywh": [[0, 1, 3, 1], [1, 0, 1, 3]]}, "E304 .*blocks 1 and 2 overlap", ""),
         (
@@ -232,7 +228,15 @@ def test_a_corner_at_which_an_edge_goes_straight_on_is_none():
 
 def test_a_bed_is_where_both_blocks_are_and_carries_the_first():
     for one in (bed([1, 0], 0, [0, 1]), bed([2, 1], 1.05, [0, 2]), bed([1, 2], 1, [0, -1])):
-        assert len(model_from_json(one).interfaces) == 1
+        refuse_astray(model_from_json(one), polygons_from_json(one))
+    for wrong, said in [
+        (bed([1, 0], 0, [0, -1]), "out of block 1"),
+        (bed([2, 1], 1, [0, -1]), "out of block 2"),
+        (bed([1, 0], 0, [0, 1], 5), "up to 5 from block 1"),
+        (bed([2, 1], 0, [0, 1]), "up to 1 from block 2"),
+    ]:
+        with pytest.raises(InputError, match=f"E303 interfaces, entry 1: .*{said}"):
+            refuse_astray(model_from_json(wrong), polygons_from_json(wrong))
 
 
 def test_what_is_fixed_may_reach_below_the_ground():

@@ -33,6 +33,10 @@ def test_a_stone_has_a_positive_id_and_pixels_of_its_own():
         stone.mask[0, 0] = False
     with pytest.raises(ValueError, match="id must be positive"):
         Stone(0, np.ones((1, 1), bool))
+    with pytest.raises(TypeError):
+        Stone(1.5, np.ones((1, 1), bool))
+    # No id of NumPy wraps where others are numbered after it.
+    assert Stone(np.uint8(255), np.ones((1, 1), bool)).id + 1 == 256
     for shape in ((2, 2), (0, 3), (4,)):
         with pytest.raises(ValueError, match="at least one pixel"):
             Stone(1, np.zeros(shape, bool))

@@ -88,7 +88,7 @@ def model_from_json(data: Mapping[str, Any]) -> RigidBlockModel:
         cure = "What has no weight of its own is a load: see --dead. What does not move is fixed."
         raise bad(what, "blocks", cure)
     if "interfaces" in data:
-        interfaces = read_interfaces(read_list(data, "interfaces"), corners)
+        interfaces = read_interfaces(read_list(data, "interfaces"), ids)
     else:
         sizes = {block.id: sqrt(block.area) for block in blocks}
         fixed = {block.id for block in blocks if block.fixed}
@@ -384,13 +384,34 @@ def with_pair_friction(
     return replace(model, interfaces=tuple(faces))
 
 
-def read_interfaces(entries: Sequence[Any], corners: Mapping[int, Points]) -> tuple[Interface, ...]:
-    """Read where blocks of some outlines touch; E303 where they do not lie so."""
+def refuse_astray(model: RigidBlockModel, corners: Mapping[int, Points]) -> None:
+    """Refuse interfaces (E303) that lie off the outlines of their blocks, or point out of one."""
     shapes = {block: shapely.Polygon(outline) for block, outline in corners.items()}
+    for place, face in enumerate(model.interfaces, 1):
+        where = f"interfaces, entry {place}"
+        for body in {face.block, face.other} - {GROUND}:
+            away = float(shapely.distance(shapes[body], shapely.points(face.points)).max())
+            if away > ASTRAY * sqrt(shapes[body].area):
+                cure = "Give points at which both touch."
+                raise bad(f"its points lie up to {away:.3g} from block {body}.", where, cure)
+        step = 0.1 * ASTRAY * sqrt(shapes[face.block].area) * np.array(face.normal)
+        ahead, behind = shapely.points(face.points + step), shapely.points(face.points - step)
+
+        def nearer(body: int, here: Points, there: Points) -> bool:
+            one, other = (shapely.distance(shapes[body], at).sum() for at in (here, there))
+            return bool(one < other)
+
+        ground = face.other == GROUND
+        if nearer(face.block, behind, ahead) and (ground or nearer(face.other, ahead, behind)):
+            raise bad(f"its normal points out of block {face.block}.", where, "Turn it round.")
+
+
+def read_interfaces(entries: Sequence[Any], ids: Collection[int]) -> tuple[Interface, ...]:
+    """Read where blocks touch."""
     found = []
     for place, entry in enumerate(entries):
         where = f"interfaces, entry {place + 1}"
-        block, other = _between(entry, corners, where)
+        block, other = _between(entry, ids, where)
         if block == GROUND:
             raise bad("the ground is its first block.", where, "Name it second.")
         points = read_numbers(entry.get("points"), (-1, 2), where)
@@ -400,20 +421,6 @@ def read_interfaces(entries: Sequence[Any], corners: Mapping[int, Points]) -> tu
             raise bad("it has no points or no normal.", where, "Give both.")
         mu = read_mu(entry, "mu", 0.0) if "mu" in entry else None
         x, y = (normal / length).tolist()
-        for body in {block, other} - {GROUND}:
-            away = float(shapely.distance(shapes[body], shapely.points(points)).max())
-            if away > ASTRAY * sqrt(shapes[body].area):
-                cure = "Give points at which both touch."
-                raise bad(f"its points lie up to {away:.3g} from block {body}.", where, cure)
-        step = 0.1 * ASTRAY * sqrt(shapes[block].area) * np.array((x, y))
-        ahead, behind = shapely.points(points + step), shapely.points(points - step)
-
-        def nearer(body: int, here: Points, there: Points) -> bool:
-            one, other = (shapely.distance(shapes[body], at).sum() for at in (here, there))
-            return bool(one < other)
-
-        if nearer(block, behind, ahead) and (other == GROUND or nearer(other, ahead, behind)):
-            raise bad(f"its normal points out of block {block}.", where, "Turn it round.")
         if len(points) > 2:  # others go by the first and the last one as its ends
             points = points[np.argsort(points @ (y, -x), kind="stable")]
         found.append(Interface(block, other, points, (x, y), mu))

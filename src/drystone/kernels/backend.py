@@ -2,8 +2,9 @@
 
 A kernel is one source that Cython compiles in place; Python takes what is compiled first.  A few
 are written in Cython and, for where that is not compiled, in NumPy.  Both ways give the same
-results, bit by bit; the environment variable ``DRYSTONE_KERNELS`` chooses: ``auto`` (the default),
-``python`` (``numpy`` in older scripts), or ``compiled``, which fails when they were not built.
+results, bit by bit, but for the simplex, which exists compiled only.  The environment variable
+``DRYSTONE_KERNELS`` chooses: ``auto`` (the default), ``python`` (``numpy`` in older scripts), or
+``compiled``, which fails when they were not built.
 """
 
 import os

@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
+from operator import index
 from typing import Any
 
 import numpy as np
@@ -54,6 +55,8 @@ class Stone:
 
     def __post_init__(self) -> None:
         mask = np.array(self.mask, dtype=bool)
+        # Ids of NumPy would wrap where wedges are numbered after them.
+        object.__setattr__(self, "id", int(index(self.id)))
         if self.id <= 0:
             raise ValueError(f"id must be positive, not {self.id}")
         if mask.ndim != 2 or not mask.any():

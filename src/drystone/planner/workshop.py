@@ -1,6 +1,7 @@
 """Everything that is prepared once for a stone set and a site (Algorithm 1, line 2)."""
 
-from dataclasses import dataclass, field
+from collections import Counter
+from dataclasses import dataclass, field, replace
 from statistics import fmean
 
 from drystone.clusters import cluster_stones
@@ -44,17 +45,19 @@ class Workshop:
         """Prepare stones for a site; UsageErrors are those of :func:`fitting_stones`."""
         book = PoseBook(site.scale)
         fitting = fitting_stones(stones, site, settings, book)
-        stock = Stock.of(book.pose(s, book.initial_angle(s)) for s in stones)
-        unfit = [stones.by_id(i) for i in sorted({s.id for s in stones}.difference(fitting))]
-        sides = stock.sides - sides_of(book.pose(s, book.initial_angle(s)) for s in unfit)
+        # A banned boulder is no measure of what may be laid; ids of wedges come after all.
+        usable = [stones.by_id(i) for i in fitting] or list(stones)
+        stock = Stock.of(book.pose(s, book.initial_angle(s)) for s in usable)
+        stock = replace(stock, largest_id=max(stone.id for stone in stones))
+        sides = stock.sides if fitting else Counter()
         clusters = cluster_stones(stones, book, settings.clusters)
         memory = StabiliseMemory(book, stock.mean_height_px, settings.stabilise)
         outlines = OutlineBook(settings.settle.outline_px, 1.0 / site.scale)
-        mean_size = fmean(stone.area_px**0.5 for stone in stones)
+        mean_size = fmean(stone.area_px**0.5 for stone in usable)
         return cls(
             stones, site, book, clusters, settings.orientations, fitting, stock, sides, memory,
             outlines, PoseCosts(stock, frozenset(settings.pin)), Views(site),
-            Seats(mean_size, settings.settle, settings.mu, settings.pin, len(stones)),
+            Seats(mean_size, settings.settle, settings.mu, settings.pin, len(usable)),
         )  # fmt: skip
 
     def poses(self, stone_id: int) -> tuple[PosedStone, ...]:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from drystone.contacts.gaps import GapSweep
 from drystone.drawing.words.content import FALLS, TILTING, dead_load, is_horizontal, number
-from drystone.errors import Notice
+from drystone.errors import Notice, counted
 from drystone.io.walls import GivenWall, on_ground
 from drystone.model.wall import Labels
 from drystone.statics.failing.mechanism import Failure, Names, describe_mechanism
@@ -383,7 +383,7 @@ class ScatterCard:
                 rows.append((f"  {name}", f"median {middle} (5 % to 95 %: {low} to {high})"))
         share = found.falling_share
         if share is not None:
-            said = f"{counts[LimitStatus.UNSTABLE]} walls, {100 * share:.0f} %"
+            said = f"{counted(counts[LimitStatus.UNSTABLE], 'wall')}, {100 * share:.3g} %"
             which = "have a limit" if counts[LimitStatus.UNBOUNDED] else "stand"
             rows.append(("  do not stand", f"{said}; the figures above are of those that {which}"))
         for status, name in ((LimitStatus.UNBOUNDED, "unbounded"), (LimitStatus.FAILED, "failed")):

@@ -17,7 +17,7 @@ from drystone.contacts.gaps import (
     scarce_contacts,
     settle_gaps,
 )
-from drystone.contacts.given import model_from_json, polygons_from_json
+from drystone.contacts.given import model_from_json, polygons_from_json, refuse_astray
 from drystone.contacts.outlines import model_of_traced, outlines_of_labels
 from drystone.contacts.settled import SETBACK
 from drystone.drawing.words.analysis import STONES, ModelledWall, Shapes
@@ -89,7 +89,9 @@ def _given(wall: GivenWall, blocks: dict[str, Any], mu: float, asked: ModelReque
     bare = None if wall.plan is None else wall.plan.metrics.F_LR_no_setback
     if bare is not None and asked.mu is None and asked.as_planned:
         remarks["contacts"] = f"set back; F_LR {bare:.3f} with contacts up to the ends of faces"
-    return ModelledWall(model_from_json(blocks), polygons_from_json(blocks), remarks=remarks)
+    model, outlines = model_from_json(blocks), polygons_from_json(blocks)
+    refuse_astray(model, outlines)
+    return ModelledWall(model, outlines, remarks=remarks)
 
 
 def _drawn(wall: GivenWall, labels: Labels, mu: float, asked: ModelRequest) -> ModelledWall:
