@@ -72,6 +72,21 @@ def test_a_plan_on_pixels_has_its_stones_where_they_are_seen(scale, px_per_m, tm
     assert caught.value.code == "E133"
 
 
+def test_a_plan_of_stones_whose_holes_stay_open_is_read(tmp_path):
+    picture = np.zeros((14, 50), np.uint8)
+    picture[2:12, 2:22], picture[2:12, 26:46] = 1, 2
+    picture[5:8, 4:9] = 0  # it moves the centroid by a pixel
+    found = read_stones(picture, settings=ReadSettings(holes="keep"))
+    result = ds.plan_wall(found, 50, 12, scale=1.0, budget=1)
+    assert len(result.plan.stone_steps) == 2
+    path = ds.write_plan_folder(result, tmp_path / "wall")
+    assert read_wall(path).blocks is not None
+    blocks = path.parent / "blocks.json"
+    blocks.write_text(blocks.read_text().replace('"id": 1,', '"id": 9,'))
+    with pytest.raises(InputError, match=r"E133 .*other stones"):
+        read_wall(path)
+
+
 def test_other_places_are_refused_and_an_image_that_is_far_too_large_is_not_decoded(tmp_path):
     made = example()
     for plan in (

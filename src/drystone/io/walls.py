@@ -281,6 +281,8 @@ def on_ground(model: RigidBlockModel) -> bool:
 def _blocks_of(plan: Plan, path: Path) -> dict[str, Any]:
     """Return the block model beside a plan on outlines; E133 when it is not that of the plan."""
     blocks = read_blocks_of(plan, path.parent)
+    # A hole that is kept moves the centroid of its stone, by less than half of its length.
+    most = 0.5 if plan.source.get("reading", {}).get("holes") == "keep" else 0.0
     if blocks is None:
         what = f"there is no {BLOCKS} beside the plan."
     elif not isinstance(blocks, dict):
@@ -288,7 +290,8 @@ def _blocks_of(plan: Plan, path: Path) -> dict[str, Any]:
     elif set(polygons := polygons_from_json(blocks)) != set(planned := _planned(plan)):
         what = f"the {BLOCKS} beside the plan has other stones than the plan."
     elif not all(
-        math.dist(_centroid(polygon), planned[block]) <= CENTROID_PX / (plan.px_per_m or 1.0)
+        math.dist(_centroid(polygon), planned[block])
+        <= CENTROID_PX / (plan.px_per_m or 1.0) + most * float(np.ptp(polygon, axis=0).max())
         for block, polygon in polygons.items()
     ):
         what = f"the {BLOCKS} beside the plan has its stones in other places than the plan."
