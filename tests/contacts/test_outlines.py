@@ -20,6 +20,7 @@ from drystone.kernels.raster import turn
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import GROUND, Block, Interface, RigidBlockModel
 from drystone_lab.pixels import tilted_wall
+from tests.naive.contacts import outlines_drawn_anew
 from tests.polygons import box_of, moved
 from tests.statics.walls import alphas, irregular, told
 from tests.strategies import repeatable
@@ -45,6 +46,20 @@ def test_areas_of_published_stones_are_those_of_their_pixels(data_dir):
     assert set(outlines) == {stone.id for stone in stones}
     for stone in stones:
         assert area(outlines[stone.id]) == pytest.approx(stone.area_px, rel=1e-3)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_small_stones_share_their_joints_though_some_keep_their_pixel_edges(seed):
+    nodes = np.random.default_rng(seed).random((40, 2)) * (24, 36)
+    away = np.hypot(*(np.indices((24, 36))[..., None] - nodes.T[:, None, None]))
+    labels = away.argmin(axis=-1).astype(np.uint32) + 1
+    outlines = outlines_of_labels(labels)
+    shapes = [shapely.Polygon(outline) for outline in outlines.values()]
+    assert shapely.area(shapes).sum() == pytest.approx(shapely.union_all(shapes).area, abs=1e-6)
+    anew = outlines_drawn_anew(labels)
+    assert [(i, line.tolist()) for i, line in outlines.items()] == [
+        (i, line.tolist()) for i, line in anew.items()
+    ]
 
 
 def test_a_tilted_joint_is_one_edge_with_its_slope():
