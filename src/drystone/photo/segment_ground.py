@@ -95,8 +95,8 @@ def fit_ground(image: NDArray[np.uint8], usable: Mask, ground: Ground) -> Ground
 def _no_ground(share: float) -> InputError:
     return InputError(
         "E176",
-        "no even ground was found: its most frequent colour fills only "
-        f"{100 * share:.0f} % of the photograph.",
+        "no even ground was found: the colour that is most frequent along the borders and all over "
+        f"fills only {100 * share:.0f} % of the photograph.",
         cure="Lay the stones on a plain sheet of another colour than theirs, and photograph "
         "nothing else; or say --ground light or --ground dark.",
     )

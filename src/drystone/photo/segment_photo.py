@@ -18,7 +18,7 @@ from drystone.photo.markers import FoundMarker, find_markers
 from drystone.photo.scale import rigid, scale_and_view
 from drystone.photo.segment import WORKING_PX, FoundStones, segment
 from drystone.photo.segment_ground import SegmentSettings
-from drystone.photo.view import SQUARE, View, apply, rectify
+from drystone.photo.view import SQUARE, View, apply, rectify, without_bands
 
 QUIET_ZONE = 0.3
 """White border of a single marker over its side, that is no ground."""
@@ -76,7 +76,6 @@ def segment_photo(
     """
     layout: MarkerLayout | None = None
     view: View | None = None
-    inside: Mask | None = None
     px_per_m: float | None = None
     markers: tuple[FoundMarker, ...] = ()
     placed: tuple[PlacedMarker, ...] = ()
@@ -94,6 +93,7 @@ def segment_photo(
         picture = image
         if share < 1.0:
             picture = np.asarray(Image.fromarray(image).resize(size, Image.Resampling.LANCZOS))
+        inside = without_bands(picture)
         by = (size[0] / width, size[1] / height)
         from_photo = np.diag([*by, 1.0])
         if scale is not None:

@@ -82,7 +82,7 @@ def rectify(image: NDArray[np.uint8], view: View, max_px: int) -> Rectified:
     # OpenCV puts 0 at the centre of the first pixel, here it is at its corner.
     half = np.array([[1.0, 0.0, 0.5], [0.0, 1.0, 0.5], [0.0, 0.0, 1.0]])
     by = np.linalg.inv(half) @ from_photo @ half
-    shown = np.full((height, width), 255, dtype=np.uint8)
+    shown = without_bands(image).astype(np.uint8)
     finer = float(np.abs(np.linalg.det(jacobian(from_photo, np.array([width, height]) / 2.0))))
     if finer < 0.5:
         # Px of the photograph between the samples would be skipped, and thin gaps with them.
@@ -93,6 +93,20 @@ def rectify(image: NDArray[np.uint8], view: View, max_px: int) -> Rectified:
     inside = np.asarray(cv2.warpPerspective(shown, by, size, flags=cv2.INTER_NEAREST)) > 0
     values[~inside] = 0
     return Rectified(np.asarray(values, dtype=np.uint8), scale, inside, from_photo)
+
+
+def without_bands(image: NDArray[np.uint8]) -> NDArray[np.bool_]:
+    """Return all but bands of one colour along the edges, beyond which most has another one."""
+    shown = np.ones(image.shape[:2], bool)
+    for turns in range(4):
+        rows = np.rot90(image, turns)
+        away = rows[:, :: 1 + rows.shape[1] // 500].astype(np.int16)
+        away = np.abs(away - away[0, 0]).max(axis=-1)
+        end = int((np.median(away, axis=1) > 16).argmax())
+        even = away[: end // 2 + 1] <= 3  # blocks of a JPEG blur the end of a band
+        if even.mean() > 0.98 and np.median(away[end:]) > 16:
+            np.rot90(shown, turns)[:end] = False
+    return shown
 
 
 def refuse_horizon(photo_to_ground: NDArray[np.float64], size_px: tuple[int, int]) -> None:
