@@ -59,12 +59,16 @@ def test_16_bits_are_scaled_and_alpha_is_ignored_and_both_are_said(tmp_path):
     tifffile.imwrite(tmp_path / "deep.tif", deep, photometric="rgb")
     cv2.imwrite(str(tmp_path / "deep.png"), deep[..., ::-1])
     saved(tmp_path / "grey.png", deep[..., 0])
+    less = np.round(PICTURE * (4095 / 255)).astype(np.uint16)
+    tifffile.imwrite(tmp_path / "12.tif", less, photometric="rgb")
+    tifffile.imwrite(tmp_path / "less.tif", 4095 - less[..., 0], photometric="miniswhite")
     clear = np.dstack([PICTURE, np.full(PICTURE.shape[:2], 100, dtype=np.uint8)])
     saved(tmp_path / "clear.png", clear)
-    for name in ("deep.tif", "deep.png", "grey.png", "clear.png"):
+    for name in ("deep.tif", "deep.png", "grey.png", "12.tif", "less.tif", "clear.png"):
         photo = read_photo(tmp_path / name)
-        assert np.array_equal(photo.values, grey if name == "grey.png" else PICTURE)
+        assert np.array_equal(photo.values, grey if name in ("grey.png", "less.tif") else PICTURE)
         assert codes(photo) == ["W174"]
+        assert ("4095" in photo.notices[0].message) == (name in ("12.tif", "less.tif"))
     clear[..., 3] = 255
     assert read_photo(saved(tmp_path / "clear.png", clear)).notices == ()
 
@@ -89,7 +93,8 @@ def test_files_that_are_no_photographs(tmp_path):
         (b"II*\0\x08\0\0\0", "E106"),
         (pillow(LARGE, "JPEG")[:3000], "E106"),
         (tiff(np.stack([PICTURE, PICTURE]), photometric="rgb"), "E109"),
-        (tiff(PICTURE.astype(np.float32), photometric="rgb"), "E107"),
+        (tiff(PICTURE.astype(np.float32), photometric="rgb"), "E107 .*8 or 16 bits"),
+        (cv2.imencode(".png", PICTURE.astype(np.uint16) * 16)[1].tobytes(), "E107 .*as TIFF"),
         (tiff(FOUR, photometric="separated"), r"E107 .*16 bits a channel in CMYK.*8 bits"),
     ):
         if data is not None:

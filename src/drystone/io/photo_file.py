@@ -54,12 +54,10 @@ def read_photo(path: str | Path, max_px: int = MAX_PX) -> Photo:
         data = given_bytes(path)
         if not data:
             raise InputError("E106", "the file is empty (0 bytes).", cure="Copy it again.")
-        values, orientation, deep = _decode(data, partial(_check, max_px=max_px))
+        values, orientation = _decode(data, partial(_check, max_px=max_px))
         _refuse_labels(values, path.name)
         rgb, notices = _to_rgb(values)
     name = writable(path.name)
-    if deep:
-        notices = (Notice("W174", "16 bits a channel were scaled to 8."), *notices)
     if orientation in images.TURNS:
         rgb = images.turned(rgb, orientation)
         said = f"{name} was {images.TURNS[orientation]}, as its EXIF data say."
@@ -74,28 +72,32 @@ def _refuse_labels(values: NDArray[Any], name: str) -> None:
     """
     colours = np.atleast_3d(values)
     colours = colours[..., :3] if colours.shape[2] > 2 else colours[..., :1]
-    level = colours.astype(np.int64) @ np.array([1, 1 << 16, 1 << 32])[: colours.shape[2]]
-    stone = level != 0
-    if level.size < LEAST_JUDGED_PX or stone.mean() > 0.95:
+    stone = (colours != 0).any(axis=2)
+    if stone.size < LEAST_JUDGED_PX or stone.mean() > 0.95:
         return
     pairs = stone[:, :-1] | stone[:, 1:]
-    equal = level[:, :-1][pairs] == level[:, 1:][pairs]
+    equal = (colours[:, :-1] == colours[:, 1:]).all(axis=2)[pairs]
     if equal.size and equal.mean() > PLAIN:
         what = "this is a label image already, plain areas on 0, and not a photograph."
         raise InputError("E175", what, cure=f"`drystone plan {name}` reads it.")
 
 
-def _decode(data: bytes, check: Callable[[int, int], None]) -> tuple[NDArray[Any], int, bool]:
-    """Return values (palettes and CMYK as RGB), the orientation, and if there were 16 bits."""
+def _decode(data: bytes, check: Callable[[int, int], None]) -> tuple[NDArray[Any], int]:
+    """Return values (palettes and CMYK as RGB) and the orientation."""
     kind = images.format_of(data)
     if kind == "TIFF":
-        values, orientation = _tiff(data, check)
-        return values, orientation, values.dtype == np.uint16
-    if kind in ("JPEG", "PNG"):
+        return _tiff(data, check)
+    if kind not in ("JPEG", "PNG"):
+        cure = "Export the photograph as JPEG (phones: 'most compatible')."
+        raise unread("this is not a JPEG, PNG or TIFF.", cure)
+    values, orientation = _by_pillow(data, check)
+    if kind == "PNG" and data[24] == 16 and values.dtype == np.uint8:
         # Colours of 16 bits come from Pillow as their upper 8.
-        return *_by_pillow(data, check), kind == "PNG" and data[24:25] == b"\x10"
-    cure = "Export the photograph as JPEG (phones: 'most compatible')."
-    raise unread("this is not a JPEG, PNG or TIFF.", cure)
+        if values[..., :3].max() < 64:
+            what = "this PNG has 16 bits a channel, and its colours fill 14 of them or fewer."
+            raise unread(what, "Export it with 8 bits a channel, or as TIFF.")
+        values = values * np.uint16(257)
+    return values, orientation
 
 
 def _check(width: int, height: int, max_px: int) -> None:
@@ -129,7 +131,8 @@ def _tiff(data: bytes, check: Callable[[int, int], None]) -> tuple[NDArray[Any],
         return images.turned(values, images.TURNED_BACK.get(orientation, orientation)), orientation
     if page.unreadable:
         what = f"TIFF with {page.unreadable} cannot be read."
-        raise unread(what, "Export it uncompressed or with LZW.")
+        cure = "Export it with 8 or 16 bits a channel, uncompressed or with LZW."
+        raise unread(what, cure)
     if page.colours:
         what = f"TIFF of {page.bits} bits a channel in {page.colours} cannot be read."
         raise unread(what, "Export it in RGB, or with 8 bits a channel.")
@@ -138,8 +141,14 @@ def _tiff(data: bytes, check: Callable[[int, int], None]) -> tuple[NDArray[Any],
     if page.negative and values.dtype == np.uint16:
         values = values.copy()
         grey = np.atleast_3d(values)[..., :1]
-        np.subtract(65535, grey, out=grey)
+        np.subtract(_white(values), grey, out=grey)
     return values, page.orientation
+
+
+def _white(values: NDArray[Any]) -> int:
+    """Return the largest number of 16 bits, or of the 10, 12 or 14 that a camera fills."""
+    bits = int(values.max()).bit_length()
+    return (1 << max(8, bits + bits % 2)) - 1
 
 
 def _to_rgb(values: NDArray[Any]) -> tuple[NDArray[np.uint8], tuple[Notice, ...]]:
@@ -147,7 +156,9 @@ def _to_rgb(values: NDArray[Any]) -> tuple[NDArray[np.uint8], tuple[Notice, ...]
     notices: list[Notice] = []
     values = values[..., None] if values.ndim == 2 else values
     if values.dtype == np.uint16:
-        values = np.round(values / 257.0).astype(np.uint8)
+        white = _white(values)
+        values = (np.arange(white + 1) * 255 / white).round().astype(np.uint8)[values]
+        notices.append(Notice("W174", f"16 bits a channel were scaled to 8: white is {white}."))
     if values.dtype != np.uint8 or values.ndim != 3 or not 1 <= values.shape[2] <= 4:
         what = f"values of type {values.dtype} are not those of a photograph."
         raise unread(what, "Export it with 8 or 16 bits a channel.")
@@ -169,10 +180,9 @@ def read_photo_picture(photo: Path, source_px: tuple[float, float]) -> Image.Ima
     try:
         with images.opened(file_bytes(photo), partial(images.check_size, max_px=MAX_PX)) as read:
             image = ImageOps.exif_transpose(read).convert("RGB")
-    except InputError as error:
-        raise _of_no_use(photo, f"the photograph cannot be read: {error.what}") from error
-    except OSError as error:
-        raise _of_no_use(photo, f"the photograph cannot be read ({error.strerror}).") from error
+    except (InputError, OSError) as error:
+        why = f"{error.strerror}." if isinstance(error, OSError) else error.what
+        raise _of_no_use(photo, f"the photograph cannot be read: {why}") from error
     width, height = source_px
     ratio = (image.width / image.height) / (width / height) if width and height else 0.0
     if abs(ratio - 1.0) > SAME_SHAPE:
