@@ -4,6 +4,7 @@ import os
 import signal
 import sys
 from collections.abc import Sequence
+from contextlib import suppress
 from io import TextIOWrapper
 from pathlib import Path
 
@@ -74,7 +75,16 @@ def _called(words: Sequence[str]) -> int:
         cure = f"Set it to one of {', '.join(CHOICES)}, or install with a compiler."
         raise UsageError("E143", what, where=VARIABLE, cure=cure)
     arguments = build_parser(words).parse_args(words)
-    code = int(arguments.run(arguments))
+    named = [Path(one) for one in vars(arguments).values() if isinstance(one, str)]
+    new = {one for path in named for one in (path, *path.parents) if not os.path.exists(one)}  # noqa: PTH110 - raises nothing
+    try:
+        code = int(arguments.run(arguments))
+    except BaseException:
+        # What was made for files that were not written goes again.
+        for folder in (folder for place in new for folder, *_ in os.walk(place, topdown=False)):
+            with suppress(OSError):
+                Path(folder).rmdir()
+        raise
     # A reader that went away is noticed here and not when the interpreter ends.
     sys.stdout.flush()
     return code

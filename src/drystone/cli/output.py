@@ -72,7 +72,6 @@ def prepare_files(paths: Sequence[Path], *, overwrite: bool) -> None:
     """Make room for files, with the folders they go into; refuse to replace one (E129)."""
     for path in paths:
         refuse_existing(path, overwrite=overwrite)
-    for path in paths:
         make_folder(path.parent)
 
 

@@ -103,15 +103,8 @@ def run(arguments: argparse.Namespace) -> ExitCode:
             }
             for size in sizes
         ]  # fmt: skip
-        print_json(
-            {
-                "stones": len(sizes),
-                "px_per_m": result.px_per_m,
-                **details,
-                "sizes": listed,
-                "notices": [str(notice) for notice in notices],
-            }
-        )
+        told = {"stones": len(sizes), "px_per_m": result.px_per_m, **details, "sizes": listed}
+        print_json({**told, "notices": [str(notice) for notice in notices]})
     else:
         if against:
             print(f"doubtful: {'; '.join(against)}")
