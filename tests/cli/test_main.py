@@ -178,7 +178,7 @@ def listed(*command):
 def test_help_lists_what_most_people_need():
     assert len(listed("plan")) <= 20
     assert {"--wall", "--set", "--budget", "--ban"} < {*listed("plan")}
-    assert listed("demo") == ["-h", "-o", "--seed", "--time", "--json"]
+    assert listed("demo") == ["-h", "-o", "--seed", "--time", "--overwrite", "--json"]
     reading = {"--skip", "--min-area", "--unit"}
     assert reading < {*listed("stones")}
     assert not reading & {*listed("plan"), *listed("analyse"), *listed("measure"), *listed("craft")}
@@ -212,8 +212,9 @@ def test_version_says_which_kernels_run(run, monkeypatch):
     assert run("--version").code == 0
 
 
-def test_without_a_command_help_is_printed_and_every_command_has_its_own(run):
+def test_without_a_command_help_is_printed_and_every_command_has_its_own(run, monkeypatch):
     told = run()
+    monkeypatch.setenv("COLUMNS", "40")  # where every usage is wrapped
     assert (told.code, told.err, told.out) == (0, "", run("--help").out)
     for name in COMMANDS:
         ran = run(name, "--help")

@@ -31,7 +31,9 @@ def add(command: argparse.ArgumentParser) -> None:
     add_scale(command)
     add_settings(command)
     add_writing(command)
-    list_only(command, "-o", "--seed", "--time", "--json")
+    list_only(command, "-o", "--overwrite", "--seed", "--time", "--json")
+    # argparse cannot wrap a usage with a group of options of which none is listed.
+    command.usage = "%(prog)s [-h] [-o DIR] [--overwrite] [--seed N] [--time SECONDS] [--json]"
     # What only `plan` has options for.
     command.set_defaults(ban=[], pin=[], fixed_order=False, resume=False, begin=None, seed=1)
 
