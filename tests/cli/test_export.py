@@ -9,7 +9,9 @@ import ezdxf
 import pytest
 
 import drystone as ds
-from drystone.drawing.export.formats import FORMATS
+from drystone.cli.commands.export import CHANGED
+from drystone.drawing.assembly import read_assembly
+from drystone.drawing.export.formats import FORMATS, ExportSettings
 from tests.cli.conftest import WALL, rewrite
 from tests.drawing.plans import planned
 
@@ -73,6 +75,20 @@ def test_a_title_of_any_letters_makes_files_that_can_be_read(run, plan):
     assert read.findtext("{http://www.w3.org/2000/svg}title") == said
     texts = ezdxf.readfile(plan.parent / "wall.dxf").modelspace().query("TEXT")
     assert said in [text.dxf.text for text in texts]
+
+
+def test_an_option_is_for_the_formats_that_it_changes(plan):
+    def made(px_per_m=200, thickness=None, density=2600.0, **settings):
+        wall = read_assembly(plan, px_per_m=px_per_m, thickness_m=thickness, density_kg_m3=density)
+        names = (*QUICK, "svg", "png", "gif", "projector")
+        return {name: FORMATS[name].files(wall, ExportSettings(**settings)) for name in names}
+
+    before = made()
+    values = (300, 0.3, 2000, 50, "mine", (1200, 800), 2.0)
+    for option, value in zip(CHANGED, values, strict=True):
+        after = made(**{"projector_px" if option == "projector" else option: value})
+        changed = {name for name in before if after[name] != before[name]}
+        assert changed == {*before} & {*CHANGED[option].split()}
 
 
 def test_exports_of_an_earlier_plan_are_named(run, plan_copy, rubble):

@@ -143,7 +143,9 @@ CASES = [
     ("export {finished} --to step", 2, "E138", "geojson"),
     ("export {finished} --to csv --thickness .3 -o {out}", 2, "E131", ""),
     ("export {finished} --to csv poses -o {out}", 2, "E131", "markers"),
-    ("export {finished} --to csv --projector 0x480@9 -o {out}", 2, "E138", "--projector"),
+    ("export {finished} --to projector --projector 0x480@9 -o {out}", 2, "E138", "--projector"),
+    ("export {finished} --to obj --density 9 -o {out}", 2, "E138", "do nothing with --to obj."),
+    ("export {finished} --to gif --ruler 0,0,9,0=1m -o {out}", 2, "E138", "--ruler: would do"),
     ("export {finished} --to csv gif --seconds-per-step 1000 -o {out}", 2, "E138", "--seconds-per"),
     ("export {finished} --to csv --ruler 0,0,9000,0=1m -o {out}", 2, "E138", "outside the picture"),
 ]  # fmt: skip

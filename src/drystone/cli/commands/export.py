@@ -5,17 +5,29 @@ import re
 from collections.abc import Sequence
 from pathlib import Path
 from statistics import median
+from typing import Any
 
+from drystone.cli import numbers
 from drystone.cli.inputs import files_of_wall, plan_file, refuse_inputs
-from drystone.cli.numbers import add_scale, picture_size_px, positive, refuse_outside, scale_notice
-from drystone.cli.output import make_folder, note, prepare_files, print_json
+from drystone.cli.output import note, prepare_files, print_json
 from drystone.cli.progress import busy
-from drystone.drawing.assembly import read_assembly
+from drystone.drawing.assembly import DENSITY_KG_M3, read_assembly
 from drystone.drawing.export.formats import FORMATS, ExportSettings, write_files
 from drystone.errors import ExitCode, Notice, UsageError
 from drystone.whole_files import refuse_existing
 
 _PROJECTOR = re.compile(r"(\d+)x(\d+)@(\d+(?:\.\d*)?)")
+
+CHANGED = {
+    "px_per_m": " ".join(name for name in FORMATS if name not in ("gif", "mp4")),
+    "thickness": "poses compas moveit urdf obj glb stl csv parquet geojson",
+    "density": "poses compas urdf csv parquet geojson",
+    "paper_scale": "pdf",
+    "title": "dxf svg png pdf",
+    "projector": "projector",
+    "seconds_per_step": "gif mp4",
+}
+"""The formats that an option changes."""
 
 
 def add(command: argparse.ArgumentParser) -> None:
@@ -30,20 +42,29 @@ def add(command: argparse.ArgumentParser) -> None:
            help="folder to add files to (default: beside the plan)")
     option("--overwrite", action="store_true", help="replace files of the same names")
     option("--json", action="store_true", help="print the files as JSON")
-    add_scale(command)
+    numbers.add_scale(command)
     option = command.add_argument_group("stones").add_argument
-    option("--thickness", type=positive, metavar="M", dest="thickness_m",
+    option("--thickness", type=numbers.positive, metavar="M",
            help="of the wall, metres (default: the side of a median stone)")
-    option("--density", type=positive, metavar="KG", dest="density_kg_m3", default=2600.0,
+    option("--density", type=numbers.positive, metavar="KG",
            help="kg in a cubic metre of stone (default 2600)")
     option = command.add_argument_group("drawings and films").add_argument
-    option("--paper-scale", type=positive, metavar="N",
+    option("--paper-scale", type=numbers.positive, metavar="N",
            help="draw the build sheet at 1:N (default: the largest usual scale that fits)")
-    option("--title", default="", metavar="TEXT", help="in the title block")
-    option("--projector", metavar="WxH@PX", default="1920x1080@1000",
+    option("--title", metavar="TEXT", help="in the title block")
+    option("--projector", type=_projector, metavar="WxH@PX",
            help="pixels of the projector, and how many make a metre on the wall (1920x1080@1000)")
-    option("--seconds-per-step", type=positive, default=0.6, metavar="S",
-           help="of films (default 0.6)")
+    option("--seconds-per-step", type=numbers.positive, metavar="S", help="of films (default 0.6)")
+
+
+def _projector(text: str) -> dict[str, Any]:
+    found = _PROJECTOR.fullmatch(text)
+    if found is None or not (int(found[1]) and int(found[2]) and float(found[3])):
+        message = f"{text!r} is not like 1920x1080@1000: its px, and how many are a metre"
+        raise argparse.ArgumentTypeError(message)
+    return {
+        "projector_px": (int(found[1]), int(found[2])), "projector_px_per_m": float(found[3])
+    }  # fmt: skip
 
 
 def run(arguments: argparse.Namespace) -> ExitCode:
@@ -57,13 +78,11 @@ def run(arguments: argparse.Namespace) -> ExitCode:
         raise UsageError("E138", "a plan and a format are needed.", where="export", cure=cure)
     settings = _settings_from(arguments)
     path = Path(arguments.plan)
+    density, thickness_m = arguments.density or DENSITY_KG_M3, arguments.thickness
     assembly = read_assembly(
-        path,
-        px_per_m=arguments.px_per_m,
-        thickness_m=arguments.thickness_m,
-        density_kg_m3=arguments.density_kg_m3,
+        path, px_per_m=arguments.px_per_m, thickness_m=thickness_m, density_kg_m3=density
     )
-    refuse_outside(arguments.px_per_m, picture_size_px(assembly.plan.source))
+    numbers.refuse_outside(arguments.px_per_m, numbers.picture_size_px(assembly.plan.source))
     asked, made = list(dict.fromkeys(arguments.to)), {}
     folder = Path(arguments.output) if arguments.output else plan_file(path).parent
     # What lies there is told before the work, as far as names are known.
@@ -77,7 +96,6 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     names = [name for files in made.values() for name in files]
     paths = [folder / name for name in names]
     refuse_inputs(files_of_wall(path), paths)
-    make_folder(folder)
     prepare_files(paths, overwrite=arguments.overwrite)
     written = {
         name: [str(file) for file in write_files(files, folder)] for name, files in made.items()
@@ -85,8 +103,8 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     note(_left_over(folder, names))
     lengths, px_per_m = [stone.length for stone in assembly.stones], assembly.px_per_m
     if px_per_m is not None and lengths:
-        note(scale_notice(median(lengths) * px_per_m, px_per_m))
-    if any(FORMATS[name].metric for name in asked) and arguments.thickness_m is None:
+        note(numbers.scale_notice(median(lengths) * px_per_m, px_per_m))
+    if any(FORMATS[name].metric for name in asked) and arguments.thickness is None:
         note(f"no --thickness: parts are {assembly.thickness:.3g} m thick")
     if arguments.json:
         print_json({"files": written})
@@ -97,18 +115,19 @@ def run(arguments: argparse.Namespace) -> ExitCode:
 
 
 def _settings_from(arguments: argparse.Namespace) -> ExportSettings:
-    found = _PROJECTOR.fullmatch(arguments.projector)
-    if found is None or not (int(found[1]) and int(found[2]) and float(found[3])):
-        what = f"{arguments.projector!r} is not a projector."
-        cure = "Write 1920x1080@1000: its px, and how many of them are a metre on the wall."
-        raise UsageError("E138", what, where="--projector", cure=cure)
-    return ExportSettings(
-        paper_scale=arguments.paper_scale,
-        title=arguments.title,
-        projector_px=(int(found[1]), int(found[2])),
-        projector_px_per_m=float(found[3]),
-        seconds_per_step=arguments.seconds_per_step,
-    )
+    """Return what drawings and films are made with; E138 for an option that changes nothing."""
+    asked = arguments.to
+    for name, formats in CHANGED.items():
+        value = getattr(arguments, name)
+        if value is not None and not {*asked} & {*formats.split()}:
+            option = f"--{name.replace('_', '-')}"
+            option = numbers.option_of(value) if name == "px_per_m" else option
+            what = f"would do nothing with --to {' '.join(asked)}."
+            cure = f"Leave it out; it is for {formats.replace(' ', ', ')}."
+            raise UsageError("E138", what, where=option, cure=cure)
+    names = ("paper_scale", "title", "seconds_per_step")
+    given = {name: getattr(arguments, name) for name in names} | (arguments.projector or {})
+    return ExportSettings(**{name: value for name, value in given.items() if value is not None})
 
 
 def _left_over(folder: Path, names: Sequence[str]) -> Notice | None:

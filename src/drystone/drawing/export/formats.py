@@ -21,28 +21,15 @@ All is made before any of it is written: nothing is when one of several formats 
 
 @dataclass(frozen=True, kw_only=True)
 class ExportSettings:
-    """How drawings and films are made.
+    """How drawings and films are made."""
 
-    Parameters
-    ----------
-    paper_scale : float or None
-        The build sheet is drawn at 1 to this; the next usual scale where the wall does not fit, and
-        None is the largest usual scale.
-    title : str
-        In the title block; empty for the name of the photograph, or of the stones.
-    projector_px : (int, int)
-        Width and height of a projector.
-    projector_px_per_m : float
-        Px of the projector in a metre on the wall.
-    seconds_per_step : float
-        Of films.
-    """
-
+    # The build sheet is drawn at 1 to this; the next usual scale where the wall does not fit, and
+    # None is the largest usual scale.
     paper_scale: float | None = None
-    title: str = ""
-    projector_px: tuple[int, int] = (1920, 1080)
-    projector_px_per_m: float = 1000.0
-    seconds_per_step: float = 0.6
+    title: str = ""  # in the title block; empty for the name of the photograph, or of the stones
+    projector_px: tuple[int, int] = (1920, 1080)  # width and height
+    projector_px_per_m: float = 1000.0  # on the wall
+    seconds_per_step: float = 0.6  # of films
 
 
 @dataclass(frozen=True)
@@ -97,10 +84,8 @@ def load_extra(module: str, extra: str, code: str, where: str) -> Any:
 _FORMATS = (
     Format("poses", "robots", ("poses.json",), "pick and place poses, grasps, masses", True),
     Format("compas", "robots", ("assembly.compas.json",), "COMPAS frames and meshes", True),
-    Format(
-        "moveit", "robots", ("scene.yaml", "wall.scene"),
-        "collision objects for MoveIt, in order", True,
-    ),
+    Format("moveit", "robots", ("scene.yaml", "wall.scene"),
+           "collision objects for MoveIt, in order", True),
     Format("urdf", "robots", ("urdf/",), "a URDF with mesh and inertia of every part", True),
     Format("obj", "solids", ("wall.obj", "wall.mtl"), "extruded stones, named objects", True),
     Format("glb", "solids", ("wall.glb",), "the same as glTF", True),
@@ -108,19 +93,14 @@ _FORMATS = (
     Format("csv", "tables", ("steps.csv",), "the build list"),
     Format("parquet", "tables", ("steps.parquet",), "the build list"),
     Format("geojson", "tables", ("wall.geojson",), "polygons with their steps"),
-    Format(
-        "dxf", "drawings", ("wall.dxf",), "R2010, layers STONES WEDGES CONTACTS FORCES MECHANISM"
-    ),
-    Format(
-        "svg", "drawings", ("wall.svg",), "every stone defined once and placed by a transform"
-    ),
+    Format("dxf", "drawings", ("wall.dxf",),
+           "R2010, layers STONES WEDGES CONTACTS FORCES MECHANISM"),
+    Format("svg", "drawings", ("wall.svg",), "every stone defined once and placed by a transform"),
     Format("png", "drawings", ("wall-numbered.png",), "the wall with step numbers"),
     Format("gif", "frames", ("build.gif",), "the construction"),
     Format("mp4", "frames", ("build.mp4",), "the construction"),
-    Format(
-        "pdf", "drawings", ("build-sheet.pdf",),
-        "drawing to scale, every stone in order, fetch list",
-    ),
+    Format("pdf", "drawings", ("build-sheet.pdf",),
+           "drawing to scale, every stone in order, fetch list"),
     Format("projector", "frames", ("projector/",), "a frame a step, 1:1 on the wall", True),
 )  # fmt: skip
 FORMATS: Mapping[str, Format] = {one.name: one for one in _FORMATS}
