@@ -11,7 +11,7 @@ from PIL import Image
 
 from drystone.cli import planning, progress
 from drystone.cli.planning import read_line
-from drystone.drawing.words.planned import profile_rows, profile_summary
+from drystone.drawing.words.planned import ending, profile_rows, profile_summary
 from drystone.io.plan_json import read_plan
 from drystone.io.wall_image import write_labels
 from drystone.model.plan import PlanMetrics
@@ -107,6 +107,18 @@ def test_the_search_is_a_row_and_its_workers_are_processes():
         assert "threads" not in lines
         for row in ("steps", "candidates"):
             assert lines[row].endswith("(without those of the search)")
+
+
+def test_what_is_left_over_is_said_as_it_is():
+    why = "no stone that is left can be placed"
+    for placed, unused, said in (
+        (0, (1, 2, 9), "0 of 3 stones placed; none found a place to rest"),
+        (1, (2, 3, 9), "1 of 4 stones placed; 2 and 3 did not fit"),  # 9 is banned
+        (1, (2, 3, 4, 9), "1 of 5 stones placed; 3 others did not fit"),
+    ):
+        plan = SimpleNamespace(stone_steps=range(placed), unused=unused, settings={"ban": [9]})
+        result = SimpleNamespace(plan=plan, status="complete", message=why, shortfall="")
+        assert ending(result) == f"complete: {said}"
 
 
 FILES = {

@@ -17,9 +17,6 @@ FIGURES = (
 )  # fmt: skip
 """Metrics that the summary has beside F_SF."""
 
-MOST_NAMED = 2
-"""More stones that found no place are named in the table alone."""
-
 
 def summary(result: PlanResult, folder: Path) -> dict[str, Any]:
     """Return what `--json` prints."""
@@ -69,8 +66,9 @@ def ending(result: PlanResult) -> str:
     placed, unused = len(result.plan.stone_steps), result.plan.unused
     why = result.message if unused else ""
     if why.startswith("no stone that is left"):
-        left = " and ".join(map(str, unused)) if len(unused) <= MOST_NAMED else "the others"
-        why = f"{left} did not fit"
+        left = [str(one) for one in unused if one not in result.plan.settings["ban"]]
+        named = " and ".join(left) if len(left) < 3 else f"{len(left)} others"
+        why = f"{named} did not fit" if placed else "none found a place to rest"
     said = f"{placed} of {counted(placed + len(unused), 'stone')} placed"
     return f"{result.status}: {'; '.join(filter(None, (said, why, result.shortfall)))}"
 
