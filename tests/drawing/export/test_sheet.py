@@ -11,8 +11,8 @@ from drystone.drawing.sheet import pages
 from drystone.drawing.sheet.words import (
     beside,
     beside_words,
+    left_foot,
     length_words,
-    lowest_corner,
     size_words,
     turn_words,
     wedge_words,
@@ -188,8 +188,8 @@ def test_sizes_and_places_have_units():
     assert length_words(small, 0.1234, 2.0) == "12.3, 200.0 cm"
     assert length_words(px, 12.3) == "12 px"
     assert size_words(px, px.parts[1]) == "30 \N{MULTIPLICATION SIGN} 6 px"
-    # The left one of two that are as low.
-    assert lowest_corner(small.parts[2]) == pytest.approx((0.3, 0.0))
+    # The left end of what is as low.
+    assert left_foot(small.parts[2]) == pytest.approx((0.3, 0.0))
     assert pages.drawn_factor(small, wedge) == 1 / 5  # 150 mm x 30 mm in 44 mm x 25 mm
     fine = assembly(px_per_m=3000.0)
     assert pages.drawn_factor(fine, next(fine.wedges)) == 1.0  # 10 mm x 2 mm

@@ -391,8 +391,8 @@ class BuildSheet:
         page.write(TURN + 26.0, low, said, PLAIN_PT + 1, ha="center", weight="bold")
 
     def _words(self, page: SheetPage, part: Part, top: float, high: float) -> None:
-        corner = words.lowest_corner(part)
-        for row, (name, point) in enumerate((("middle", part.centroid), ("lowest corner", corner))):
+        places = (("middle", part.centroid), ("left end of its foot", words.left_foot(part)))
+        for row, (name, point) in enumerate(places):
             at = top - 10.0 * row
             page.write(WHERE, at, name, SMALL_PT, color=FAINT)
             # The grip of a rule: how far from the left end, then how high.

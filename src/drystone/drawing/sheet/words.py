@@ -45,8 +45,8 @@ def size_words(assembly: Assembly, wedge: Part) -> str:
     return f"{width:.0f} \N{MULTIPLICATION SIGN} {height:.0f} px"
 
 
-def lowest_corner(part: Part) -> Point:
-    """Return the lowest corner of a part in the wall, the left one of several."""
+def left_foot(part: Part) -> Point:
+    """Return the left end of a part's foot, which is the lowest 2 % of its height in the wall."""
     corners = part.corners
     low = corners[:, 1] <= corners[:, 1].min() + 0.02 * np.ptp(corners[:, 1])
     x, y = min(corners[low].tolist())
