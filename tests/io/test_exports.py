@@ -212,7 +212,7 @@ RUNS = '<mask left="0" top="0" width="3" height="3" rle="1,2"/>'
         ({"a": {"regions": [{"shape_attributes": RECT}]}}, "region 0.*'y'"),
         ([task(result(PER_CENT | {"width": "a", "height": 1}))], "result 0"),
         ([task({"value": {"points": [[1, 2]]}})], "result 0.*original_width"),
-        ("0 .1 .1 .2 .2 .3\n0 .1 .1 .2 .1 .2 .2 .4\n", "line 2.*odd number"),
+        ("0 .1 .1 .2 .2 .3\n0 .1 .1 .2 .1 .2 .2 .4\n", "line 2.*odd number.*save_conf"),
         (CVAT.format("<box/>"), "shape 0.*'xtl'"),
         (CVAT.format(RUNS), "shape 0.*do not fill"),
     ],

@@ -681,7 +681,7 @@ def read_yolo(data: bytes, settings: ReadSettings) -> OutlineFile:
                 found.aside["boxes"] += 1
             elif values:
                 if len(values) % 2:
-                    raise ValueError("an odd number of coordinates")
+                    raise ValueError("an odd number of coordinates; save without save_conf")
                 corners = np.array(values, float).reshape(-1, 2)
                 found.add(where, [[corners]], label=kind)
     return found.file("Boxes have no outlines: train or label segments." if found.aside else "")
