@@ -3,7 +3,7 @@
 import statistics
 from fractions import Fraction
 
-SLACK = Fraction(1, 10**12)
+SLACK = Fraction(1, 10**9)
 
 
 def _at_least_mean(pi, index):

@@ -6,11 +6,11 @@ from dataclasses import dataclass
 
 from drystone.indices import Indices
 
-MEAN_SLACK = 1e-12
-"""A mean may round above every one of equal values; without slack the filter would drop all."""
-
 TIE_DIGITS = 9
 """Sums that contain LLC are equal to the precision of the limit analysis."""
+
+MEAN_SLACK = 10.0**-TIE_DIGITS
+"""So are values of LLC.  A mean may round above every one of equal values, and drop all."""
 
 
 @dataclass(frozen=True, kw_only=True)
