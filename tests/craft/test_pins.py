@@ -4,11 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.optimize import OptimizeResult
 
 from drystone.contacts.given import model_from_json
 from drystone.craft import Masonry, pins
 from drystone.statics.limit import lateral_resistance
+from drystone.statics.lp.highs import HighsSession
+from drystone.statics.lp.program import Solution
+from drystone.statics.result import LimitStatus
 from tests.craft.walls import box, find, mirrored
 
 
@@ -157,8 +159,8 @@ def test_without_wedges_contacts_or_an_answer_nothing_is_judged(monkeypatch):
     assert "does not stand" in found.note
     # A solver that gives up is no wall that falls.
     loops = {1: box(0, 0, 1, 1), 8: box(0, 1, 4, 1), 9: box(3.5, 0, 0.5, 1)}
-    gave_up = OptimizeResult(success=False, status=4)
-    monkeypatch.setattr(pins, "linprog", lambda *_, **__: gave_up)
+    gave_up = Solution(LimitStatus.FAILED, None, None, "", "")
+    monkeypatch.setattr(HighsSession, "minimise", lambda *_: gave_up)
     found = find("pins", modelled(loops, {9}))
     assert found.number is None
     assert found.note == "What the wedges carry is not known: the solver gave up."

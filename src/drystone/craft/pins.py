@@ -5,13 +5,12 @@ from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
-from scipy.optimize import linprog
-from scipy.sparse import csr_array, hstack
 
 from drystone.craft.finding import Case, Evidence, Limit, Line, worst_first
 from drystone.craft.masonry import Masonry
 from drystone.model.wedge_shape import WedgeRule, WedgeSettings, WedgeShape, open_sides
 from drystone.statics.joints import is_head_joint, loose_blocks
+from drystone.statics.lp.highs import HighsSession
 from drystone.statics.lp.program import assemble
 from drystone.statics.model import GROUND, RigidBlockModel
 from drystone.statics.result import LimitStatus
@@ -20,9 +19,6 @@ EASE = 0.2
 """Wedges may miss their sizes by so much: a planner's go by all stones, not by those placed."""
 
 UNKNOWN = "What the wedges carry is not known"
-
-INFEASIBLE = 2
-"""Status of scipy's linprog when there are no forces in equilibrium."""
 
 
 def pins(masonry: Masonry, limit: Limit) -> Evidence:
@@ -157,26 +153,27 @@ def least_wedge_loads(
     """
     if all(block.fixed for block in model.blocks):
         return dict.fromkeys(sorted(wedge_ids), 0.0)
-    program = assemble(model)
-    loads = {}
-    forces = program.matrix[:, 1:]
-    nothing = csr_array((forces.shape[0], 1))
+    # From the forces of one wedge to those of the next it is not far.
+    program, loads = assemble(model), {}
+    session = HighsSession(program)
+    _ = session.highs.changeColBounds(0, 0.0, 0.0)  # alpha: no more than dead load
+    found = session.minimise(np.zeros(program.column_count))
+    if found.status is not LimitStatus.OPTIMAL:
+        return found.status
+    forces = found.optimum[0]
     for wedge in sorted(wedge_ids):
-        costs = _vertical(model, wedge)
-        # Least is the greater of 0 and costs . forces: a wedge between steep faces may be pulled
-        # down by friction as hard as one likes, so the costs alone need not have a least value.
-        found = linprog(
-            np.append(np.zeros(len(costs)), 1.0),
-            A_ub=csr_array(np.append(costs, -1.0)[None]),
-            b_ub=[0.0],
-            A_eq=hstack((forces, nothing)),
-            b_eq=program.rhs,
-            bounds=(0, None),
-            method="highs",
-        )
-        if not found.success:
-            return LimitStatus.UNSTABLE if found.status == INFEASIBLE else LimitStatus.FAILED
-        loads[wedge] = float(found.fun) * program.weight
+        costs = np.array([0.0, *_vertical(model, wedge)])
+        # It cannot carry less than nothing.  Friction between steep faces may pull it down as hard
+        # as one likes, so there need not be a least value.
+        load = float(costs @ forces)
+        if load > 0.0:
+            found = session.minimise(costs)
+            if found.status is LimitStatus.OPTIMAL:
+                forces = found.optimum[0]
+            elif found.status is not LimitStatus.UNBOUNDED:
+                return LimitStatus.FAILED
+            load = float(costs @ forces) if found.status is LimitStatus.OPTIMAL else 0.0
+        loads[wedge] = max(0.0, load) * program.weight
     return loads
 
 
