@@ -23,8 +23,10 @@ from drystone.statics.incremental import (
     HighsAnalysis,
     IncrementalAnalysis,
     IncrementalResult,
+    incremental_analysis,
 )
 from drystone.statics.lp.highs import WARM
+from tests.kernels.simplex_walls import needs_kernel
 from tests.planner.scenes import RASTER, blocks, gave_up, greedy, of_rubble, rubble, watched
 
 
@@ -151,6 +153,30 @@ def test_every_candidate_is_as_strong_as_its_model_analysed_whole(settings, monk
         assert candidate.solves == Solves()
         alphas.add((mine.left.alpha, mine.right.alpha))
     assert len(alphas) > 5
+
+
+@needs_kernel
+def test_of_candidates_for_a_large_wall_the_weaker_side_is_enough(monkeypatch):
+    """What is built knows both sides."""
+    planner = of_rubble(ds.PlannerSettings(sampling="full", two_sided=True), 0)
+    begun = planner.build
+    units = begun.analysis.program.units
+    planner.build = replace(begun, grown_from=incremental_analysis(begun.model, units, most=1))
+    judge = watched(monkeypatch, Evaluator, "judge")
+    run_to_end(planner)
+    judged, actions = [candidate for _, candidate in judge], planner.build.actions
+    assert len(judged) > len(actions) > 4
+    assert sum(candidate.resistance.one_sided for candidate in judged) > 4
+    for candidate in (*judged, *actions):
+        whole, mine = ds.lateral_resistance(candidate.model), candidate.resistance
+        assert mine.stable == whole.stable
+        assert candidate.indices.LLC == pytest.approx(mine.value, abs=1e-9)
+        assert mine.value == pytest.approx(whole.value, abs=1e-9)
+        for found, sought in ((mine.left, whole.left), (mine.right, whole.right)):
+            exact = candidate in actions or not mine.one_sided
+            assert found.alpha == pytest.approx(sought.alpha, abs=1e-9) or not exact
+            assert sought.alpha is None or found.alpha <= sought.alpha + 1e-9
+    assert not any(action.resistance.one_sided for action in actions)
 
 
 def test_states_are_kept_only_to_go_back_to_them():

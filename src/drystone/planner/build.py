@@ -1,6 +1,6 @@
 """The state of construction: what is built, and what it carries."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 from drystone.contacts.interfaces import PointContacts
@@ -61,7 +61,7 @@ class Candidate:
     # mean height of the other candidates when the stone begins a course (Eq. 8)
     course_height_px: float | None
     model: RigidBlockModel
-    resistance: LateralResistance
+    resistance: LateralResistance  # maybe one-sided, until it is built
     # the model of outlines with fewer and less able contacts, in which the wall must stand as
     # well (`sturdy`); None for pixels
     sturdy_model: RigidBlockModel | None = None
@@ -112,6 +112,7 @@ class Build:
     before: "Build | None" = None  # the state before the last action, if it was kept
     sturdy_model: RigidBlockModel | None = None  # of a wall of outlines: see `Candidate`
     sturdy_from: IncrementalAnalysis | None = None  # of its sturdy model before the last action
+    grown: IncrementalAnalysis | None = None  # of the wall, where it is known already
 
     @classmethod
     def empty(cls, site: Site, mu: float, stone_area_px: float, *, exact: bool = False) -> "Build":
@@ -135,7 +136,7 @@ class Build:
         It depends on the models of the actions, one after the other, and on nothing else.
         """
         assert self.grown_from is not None  # noqa: S101 - a wall that is built on began empty
-        return self.grown_from.extended(self.model)
+        return self.grown or self.grown_from.extended(self.model)
 
     @cached_property
     def sturdy_analysis(self) -> IncrementalAnalysis | None:
@@ -155,9 +156,13 @@ class Build:
         `keep`: the new state knows this one, to go back to it.
         """
         wall = self.wall.add(action.stabilised.placement, action.stabilised.wedges)
+        grown = None
+        if action.resistance.one_sided:
+            grown = self.analysis.extended(action.model)
+            action = replace(action, resistance=grown.result.resistance)
         return Build(
             wall, action.model, (*self.actions, action), self.analysis, self if keep else None,
-            action.sturdy_model, self.sturdy_analysis,
+            action.sturdy_model, self.sturdy_analysis, grown,
         )  # fmt: skip
 
     def states(self) -> "tuple[Build, ...]":

@@ -16,7 +16,7 @@ stone is solved from the start by :func:`drystone.statics.limit.lateral_resistan
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from math import isnan
 from typing import NamedTuple
@@ -27,17 +27,25 @@ from drystone.kernels import simplex
 from drystone.kernels.cones import Figures, figures
 from drystone.kernels.simplex import Added, Answer, Optimum
 from drystone.statics.limit import MESSAGES, lateral_resistance, resistance_between
-from drystone.statics.local_update import PrimalDual, local_update
-from drystone.statics.lp.certificate import certified_fall, fall_certificate, optimum_of
+from drystone.statics.local_update import PrimalDual, forces_at, local_update
+from drystone.statics.lp.certificate import certified_fall, optimum_of
 from drystone.statics.lp.cone_program import ConeProgram
 from drystone.statics.lp.extremes import Extreme, certified_extreme
 from drystone.statics.lp.highs import TOLERANCE, HighsSession, WarmBasis, WarmSession
 from drystone.statics.lp.program import EquilibriumProgram, Units, assemble
 from drystone.statics.model import GROUND, Addition, Direction, RigidBlockModel
-from drystone.statics.result import Certificate, LateralResistance, LimitResult, LimitStatus
+from drystone.statics.result import (
+    CERTIFIED,
+    Certificate,
+    LateralResistance,
+    LimitResult,
+    LimitStatus,
+)
 
 SIMPLEX = "simplex"
 LOCAL = "HiGHS simplex below the stone"
+
+NO_WEAKER = "It carries no less than on its weaker side."
 
 MANY_BLOCKS = 120
 """Walls of more blocks are not for the simplex kernel.
@@ -58,7 +66,11 @@ class IncrementalResult:
     """Resistance of a wall with one more stone."""
 
     resistance: LateralResistance
-    """As :func:`drystone.statics.limit.lateral_resistance` gives it, to the last digits."""
+    """As :func:`drystone.statics.limit.lateral_resistance` gives it, to the last digits.
+
+    Of a candidate for a wall of many stones one side may be told only to be no weaker than the
+    other: :attr:`LateralResistance.one_sided`.
+    """
     solved_cold: bool = False
     """True when a warm answer had no certificate, so that all was solved again from the start."""
 
@@ -85,7 +97,8 @@ class IncrementalAnalysis(ABC):
     def extended(self, model: RigidBlockModel) -> "IncrementalAnalysis":
         """Return the analysis of the wall with one more stone, the chosen one.
 
-        Its `result` equals what `resistance_with` returns for the same model, bit by bit.
+        Its `result` is what `resistance_with` returns for the same model, and never one-sided: to
+        the last digits for many stones, else bit by bit.
         """
         return self if model is self.model else self._extended_to(model)
 
@@ -102,12 +115,6 @@ class ConeAnalysis(IncrementalAnalysis):
 
     program: ConeProgram
 
-    def _result_with(self, model: RigidBlockModel) -> IncrementalResult:
-        grown = self._grown(model)
-        if grown is None:
-            return self.in_highs().resistance_with(model)
-        return _result_between(model, self._bounds(model, grown[1]))
-
     def _grown(self, model: RigidBlockModel) -> tuple[Addition, Added] | None:
         """Return what is new; None when it is not for the cone program."""
         addition = model.added
@@ -115,14 +122,6 @@ class ConeAnalysis(IncrementalAnalysis):
             return None
         added = self.program.columns_of(addition, model.mu)
         return None if added is None else (addition, added)
-
-    @abstractmethod
-    def in_highs(self) -> "HighsAnalysis":
-        """Return the analysis that answers what is not for the cone program."""
-
-    @abstractmethod
-    def _bounds(self, model: RigidBlockModel, added: Added) -> "Iterator[Bound | None]":
-        """Find the greatest alpha, then the least."""
 
 
 def incremental_analysis(
@@ -163,14 +162,21 @@ class SimplexAnalysis(ConeAnalysis):
     least: Optimum
     most: int
 
-    def in_highs(self) -> "HighsAnalysis":
+    def _in_highs(self) -> "HighsAnalysis":
         """Begin anew: HiGHS has not followed this wall."""
         return HighsAnalysis.of(RigidBlockModel((), (), self.model.mu), self.program.units)
+
+    def _result_with(self, model: RigidBlockModel) -> IncrementalResult:
+        grown = self._grown(model)
+        if grown is None:
+            return self._in_highs().resistance_with(model)
+        ends = self.greatest, self.least
+        return _result_between(model, (self._bound(end, grown[1])[1] for end in ends))
 
     def _extended_to(self, model: RigidBlockModel) -> IncrementalAnalysis:
         grown = self._grown(model)
         if grown is None:
-            return self.in_highs().extended(model)
+            return self._in_highs().extended(model)
         addition, added = grown
         greatest, upper = self._bound(self.greatest, added)
         least, lower = self._bound(self.least, added)
@@ -190,10 +196,6 @@ class SimplexAnalysis(ConeAnalysis):
         if answer.status == simplex.FAILED:
             return answer, None
         return answer, _bound_of(self.program, added, answer, optimum.sign, SIMPLEX)
-
-    def _bounds(self, model: RigidBlockModel, added: Added) -> "Iterator[Bound | None]":  # noqa: ARG002
-        for optimum in (self.greatest, self.least):
-            yield self._bound(optimum, added)[1]
 
 
 @dataclass(frozen=True, eq=False)
@@ -238,9 +240,12 @@ class LocalAnalysis(ConeAnalysis):
         ends = known(1, greatest), known(-1, least)
         return cls(by_highs.model, result, program, by_highs, *ends)
 
-    def in_highs(self) -> "HighsAnalysis":
-        """Return the same wall in HiGHS."""
-        return self.by_highs
+    def _result_with(self, model: RigidBlockModel) -> IncrementalResult:
+        grown = self._grown(model)
+        bounds = None if grown is None else self._bounds(grown[1])
+        if bounds is None:
+            return self.by_highs.resistance_with(model)
+        return _result_between(model, bounds)
 
     def _extended_to(self, model: RigidBlockModel) -> IncrementalAnalysis:
         grown = self._grown(model)
@@ -258,7 +263,7 @@ class LocalAnalysis(ConeAnalysis):
             return LocalAnalysis(after, result, program, starts, greatest, least, self.unsolved + 1)
         by_highs = self.by_highs.extended(model)
         assert isinstance(by_highs, HighsAnalysis)  # noqa: S101 - it goes on as what it is
-        return self._of(by_highs, _result_between(model, self._bounds(model, added)), program)
+        return self._of(by_highs, by_highs.result, program)
 
     def _followed(
         self,
@@ -294,14 +299,33 @@ class LocalAnalysis(ConeAnalysis):
             return None, None
         return near, _bound_of(self.program, added, near, end.sign, LOCAL)
 
-    def _bounds(self, model: RigidBlockModel, added: Added) -> "Iterator[Bound | None]":
-        whole = None
-        for end, opposite in self._ends:
-            bound = self._near(end, opposite, added)[1]
-            if bound is None:
-                whole = whole or self.by_highs.prepared(model)
-                bound = highs_bound(*whole, end.sign)
-            yield bound
+    def _bounds(self, added: Added) -> "tuple[Bound, ...] | None":
+        """Find the end that is weaker in the wall; of the other, whether it is no weaker (LLC).
+
+        A fall alone says enough.  None where an end is not found near the stone.
+        """
+        found = dict[int, Bound]()
+        for end, opposite in sorted(self._ends, key=lambda ends: abs(ends[0].alpha)):
+            weaker = found.get(-end.sign)
+            bound = None if weaker is None else self._carries(-weaker.alpha, end, opposite, added)
+            bound = bound or self._near(end, opposite, added)[1]
+            if bound is None or bound.fall is not None:
+                return None if bound is None else (bound,)
+            found[end.sign] = bound
+        return found[1], found[-1]
+
+    def _carries(
+        self, alpha: float, end: PrimalDual, opposite: PrimalDual, added: Added
+    ) -> "Bound | None":
+        """Prove that the wall with a stone carries an alpha, and maybe more towards one end."""
+        forces = forces_at(self.program, end, opposite, added, alpha)
+        if forces is None:
+            return None
+        rest = np.zeros(3 * (len(self.program.weights) + len(added.weights)))
+        found = figures(self.program.cones, self.program.weights, added, alpha, forces, rest)
+        proof = Certificate(found.residual, found.violation, lower=alpha)
+        carried = max(found.residual, found.violation) <= CERTIFIED
+        return Bound(alpha, proof, None, LOCAL) if carried else None
 
 
 class WarmBases(NamedTuple):
@@ -371,23 +395,6 @@ class HighsAnalysis(IncrementalAnalysis):
         return program, bases.appended(program)
 
 
-def highs_bound(program: EquilibriumProgram, starts: WarmBases, sign: int) -> "Bound | None":
-    """Find the greatest (sign 1) or least (-1) alpha; None without a certificate."""
-    start = starts.greatest if sign > 0 else starts.least
-    extreme = _warm_extreme(program, WarmSession(program), start, sign)
-    solution, certificate = extreme.solution, extreme.certificate
-    if certificate is None or solution.duals is None or extreme.status is LimitStatus.FAILED:
-        return None
-    if extreme.status is LimitStatus.UNSTABLE:
-        return Bound(float("nan"), certificate, certificate, solution.solver)
-    fall = None
-    if sign * extreme.alpha < -TOLERANCE:
-        fall = fall_certificate(program, -solution.duals)
-        if not fall.holds:
-            return None
-    return Bound(extreme.alpha, certificate, fall, solution.solver)
-
-
 def _solved_from(
     model: RigidBlockModel, program: EquilibriumProgram, starts: WarmBases
 ) -> tuple[IncrementalResult, WarmBases, tuple[Extreme, Extreme] | None]:
@@ -450,18 +457,14 @@ def _bound_of(
 def certified_bound(found: Figures, alpha: float, sign: int, solver: str) -> Bound | None:
     """Return the greatest (sign 1) or least (-1) alpha if the figures prove it.
 
-    With an alpha that is NaN they have to prove that no alpha holds the blocks up.
+    Beyond 0 they have to prove that the blocks fall by themselves: no forces do.  With an alpha
+    that is NaN they have to prove that no alpha holds them up.
     """
-    if isnan(alpha):
-        certificate = certified_fall(found, found.live)
-        return Bound(alpha, certificate, certificate, solver) if certificate.holds else None
+    if isnan(alpha) or sign * alpha < -TOLERANCE:
+        fall = certified_fall(found, found.live if isnan(alpha) else 0.0)
+        return Bound(alpha, fall, fall, solver) if fall.holds else None
     certificate = optimum_of(found, alpha, sign)
-    if not certificate.holds:
-        return None
-    if not sign * alpha < -TOLERANCE:
-        return Bound(alpha, certificate, None, solver)
-    fall = certified_fall(found)
-    return Bound(alpha, certificate, fall, solver) if fall.holds else None
+    return Bound(alpha, certificate, None, solver) if certificate.holds else None
 
 
 def _result_between(model: RigidBlockModel, bounds: Iterable[Bound | None]) -> IncrementalResult:
@@ -481,12 +484,13 @@ def _result_between(model: RigidBlockModel, bounds: Iterable[Bound | None]) -> I
         found.append(bound)
 
     def result(direction: Direction, bound: Bound, alpha: float) -> LimitResult:
+        one_sided = bound.fall is None and bound.certificate.upper is None
         return LimitResult(
             status,
             direction,
             max(0.0, alpha) if status is LimitStatus.OPTIMAL else None,
             certificate=bound.certificate,
-            message=MESSAGES[status],
+            message=NO_WEAKER if one_sided else MESSAGES[status],
             solver=bound.solver,
         )
 

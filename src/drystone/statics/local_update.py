@@ -9,7 +9,7 @@ Nothing here is sure to hold.  Forces and mechanism of the whole wall are put to
 for the caller to certify them; what was not found, or not proved, is for another solver.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -18,7 +18,7 @@ from scipy.sparse import csc_array, hstack, vstack
 
 from drystone.kernels.simplex import OPTIMAL, UNSTABLE, Added, Cones, Optimum
 from drystone.statics.lp.cone_program import NONE_CLOSED, ConeProgram
-from drystone.statics.lp.highs import WarmBasis, corrected, loaded, solved
+from drystone.statics.lp.highs import TOLERANCE, WarmBasis, corrected, loaded, solved
 from drystone.statics.lp.program import Floats
 
 REACH = 2.0
@@ -31,13 +31,12 @@ NO_WORK = 1e-11
 """Work of a stone on the mechanism of the wall that counts as none."""
 
 # Dual simplex without perturbed costs takes half the time of the primal method where only feasible
-# unknowns are sought, from a basis with gaps.
-_DUAL, _DEVEX = 1, 1
+# unknowns are sought, from a basis with gaps.  With costs the primal one takes a seventh.
+_DUAL, _PRIMAL, _DEVEX = 1, 4, 1
 _HIGHS_OPTIONS: Mapping[str, Any] = {
     "solver": "simplex",
     "presolve": "off",
     "simplex_scale_strategy": 0,
-    "simplex_strategy": _DUAL,
     "simplex_dual_edge_weight_strategy": _DEVEX,
     "dual_simplex_cost_perturbation_multiplier": 0.0,
     "simplex_initial_condition_check": False,
@@ -61,22 +60,41 @@ def local_update(
 
     `end` is the one to be found, of the wall without the stone.  Where the mechanism of the wall,
     or of the stone alone, is not that of both, one is looked for in which all bodies near the stone
-    move as they will.  None when there is none, or when no strip is enough.
+    move as they will.  None when there is none, or when no strip is enough.  A fall comes without
+    forces: none hold the stone.
     """
     if not len(added.weights):
         return None
     for mechanism, reach in ((_mechanism, REACH), (_mechanism_near, FURTHER * REACH)):
         moved = mechanism(program, end, added)
-        if moved is not None and np.isnan(moved.alpha):
-            return moved
-        carried = None if moved is None else _carried(end, opposite, moved.alpha)
-        if moved is None or carried is None:
+        if moved is None:
             continue
-        basic = end.forces > 0.0
-        forces = _strip_forces(program, added, moved.alpha, (carried, basic), reach)
+        if np.isnan(moved.alpha) or end.sign * moved.alpha < -TOLERANCE:
+            return moved._replace(forces=np.empty(0))
+        forces = forces_at(program, end, opposite, added, moved.alpha, (reach,))
         if forces is not None:
             return moved._replace(forces=forces)
     return None
+
+
+def forces_at(
+    program: ConeProgram,
+    end: PrimalDual,
+    opposite: PrimalDual,
+    added: Added,
+    alpha: float,
+    reaches: Iterable[float] = (REACH, FURTHER * REACH),
+) -> Floats | None:
+    """Return forces that carry a wall with one more stone at some alpha; None where none are found.
+
+    Both ends are those of the wall without the stone.
+    """
+    carried = _carried(end, opposite, alpha)
+    if carried is None or not len(added.weights):
+        return None
+    known = carried, end.forces > 0.0
+    found = (_strip_forces(program, added, alpha, known, reach) for reach in reaches)
+    return next((forces for forces in found if forces is not None), None)
 
 
 def _carried(end: PrimalDual, opposite: PrimalDual, alpha: float) -> Floats | None:
@@ -128,6 +146,7 @@ def _mechanism_near(program: ConeProgram, end: PrimalDual, added: Added) -> Prim
     open_[added.closed] = False
     on = (place[wall.first] >= 0) | ((wall.second >= 0) & (place[wall.second] >= 0))
     chosen = open_ & on
+    new = np.zeros(len(added.cones.first), bool)
     first = np.concatenate((wall.first[chosen], added.cones.first))
     second = np.concatenate((wall.second[chosen], added.cones.second))
     entries = np.concatenate((wall.entries[:, chosen], added.cones.entries), axis=1)
@@ -147,7 +166,8 @@ def _mechanism_near(program: ConeProgram, end: PrimalDual, added: Added) -> Prim
     matrix = csc_array(hstack((live[:, None], -live[:, None], rest[:, None], forces)))
     costs = np.zeros(matrix.shape[1])
     costs[:2] = -end.sign, end.sign
-    alpha, found = np.nan, least(costs, matrix, rhs)
+    starts = [end.alpha > 0.0, end.alpha < 0.0, True], end.forces[chosen] > 0.0, new
+    alpha, found = np.nan, least(costs, matrix, rhs, np.concatenate(starts))
     if found is not None:
         alpha = float(found[0][0] - found[0][1])
     else:
@@ -262,7 +282,8 @@ def least(
     None when there is no optimum, whatever the reason.  `basic` unknowns are so at the start, at
     most as many as there are rows; they need not be independent.  HiGHS fills the gaps.
     """
-    highs = loaded(_HIGHS_OPTIONS, matrix, (rhs, rhs), np.zeros(len(costs)), costs)
+    options = {**_HIGHS_OPTIONS, "simplex_strategy": _PRIMAL if costs.any() else _DUAL}
+    highs = loaded(options, matrix, (rhs, rhs), np.zeros(len(costs)), costs)
     if basic is not None:
         WarmBasis(columns=()).carrying(basic, len(rhs)).given_to(highs)
     unknowns = solved(highs)

@@ -136,6 +136,15 @@ class LateralResistance:
         return min(self.left.alpha, self.right.alpha) / self.mu
 
     @property
+    def one_sided(self) -> bool:
+        """True when one side is only proved to carry `alpha`, as much as the weaker one.
+
+        A search asks no more of candidates.
+        """
+        proofs = (side.certificate for side in (self.left, self.right) if side.success)
+        return any(proof is not None and proof.upper is None for proof in proofs)
+
+    @property
     def failed(self) -> bool:
         """True when the solver gave up on either direction: nothing is known then."""
         return LimitStatus.FAILED in (self.left.status, self.right.status)
