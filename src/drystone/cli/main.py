@@ -1,5 +1,6 @@
 """Entry point: parse, dispatch, and turn errors into exit codes."""
 
+import gc
 import os
 import signal
 import sys
@@ -20,6 +21,7 @@ from drystone.errors import (
 )
 from drystone.kernels.backend import CHOICES, VARIABLE, fault
 from drystone.search.interrupts import Terminated, terminable
+from drystone.search.processes import RARELY
 
 _SMALLER = {
     "plan": "--scale or wall",
@@ -37,6 +39,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     itself, 130 interrupted, 143 terminated.  With ``--debug`` errors are raised.
     """
     words = sys.argv[1:] if argv is None else argv
+    gc.set_threshold(RARELY)
     with terminable() as came:
         try:
             code = _called(words)
