@@ -142,8 +142,8 @@ def joints_below(landscape: Landscape, box: Box, end_px: float) -> tuple[Box | N
         return landscape.boxes[places[np.argmin(away_squared[places])]] if places.size else None
 
     return (
-        nearest(right <= last, (right - box.left) ** 2 + rise),
-        nearest(left >= end_px, (left - box.right) ** 2 + rise),
+        nearest(right < last, (right - box.left) ** 2 + rise),
+        nearest(left > end_px, (left - box.right) ** 2 + rise),
     )
 
 

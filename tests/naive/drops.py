@@ -116,8 +116,8 @@ def joint(boxes, box, terms):
     if bottom < terms.cell_px / 2:
         return 0.5
     below = [other for other in boxes if other[3] <= (bottom + top) / 2]
-    ends = [(other[2], other) for other in below if other[2] <= terms.width_px - terms.narrowest_px]
-    starts = [(other[0], other) for other in below if other[0] >= terms.narrowest_px]
+    ends = [(other[2], other) for other in below if other[2] < terms.width_px - terms.narrowest_px]
+    starts = [(other[0], other) for other in below if other[0] > terms.narrowest_px]
     ratios = []
     for corners, x in ((ends, left), (starts, right)):
         if corners:

@@ -90,10 +90,10 @@ def interlocking(labels, stone, end_px):
         if other.y1 > (me.y0 + me.y1) / 2:
             continue
         width = other.x1 - other.x0
-        if labels.shape[1] - other.x1 >= end_px:
+        if labels.shape[1] - other.x1 > end_px:
             distance = math.dist((other.x1, other.y1), (me.x0, me.y0))
             ones.append((distance, abs(me.x0 - other.x1) / width))
-        if other.x0 >= end_px:
+        if other.x0 > end_px:
             distance = math.dist((other.x0, other.y1), (me.x1, me.y0))
             twos.append((distance, abs(me.x1 - other.x0) / width))
     # Several equally near corners: the stone placed first (ids rise in the walls drawn here).

@@ -490,11 +490,11 @@ def joint(wall, terms, left, bottom, right, top):
         rise_ = boxes[k + 3] - bottom
         away = boxes[k + 2] - left
         distance = away * away + rise_ * rise_
-        if boxes[k + 2] <= terms.width - terms.narrowest and distance < least_one:
+        if boxes[k + 2] < terms.width - terms.narrowest and distance < least_one:
             one, least_one = k, distance
         away = boxes[k] - right
         distance = away * away + rise_ * rise_
-        if boxes[k] >= terms.narrowest and distance < least_two:
+        if boxes[k] > terms.narrowest and distance < least_two:
             two, least_two = k, distance
     if one < 0 and two < 0:
         return NO_JOINT
