@@ -129,8 +129,8 @@ def joints_below(landscape: Landscape, box: Box, end_px: float) -> tuple[Box | N
 
     below1 is the stone whose top right corner is closest to the box's bottom left corner, below2
     the one whose top left corner is closest to its bottom right corner, both among the stones
-    whose top is not above the stone's vertical centre; of equals the first.  A corner nearer than
-    `end_px` to the far end of the wall is none.
+    whose top is not above the stone's vertical centre; of equals the first.  A corner no farther
+    than `end_px` from the far end of the wall is none.
     """
     left, right, _, top = landscape.box_table
     below = 2 * top <= box.top + box.bottom
@@ -152,8 +152,8 @@ def interlocking_width_ratio(landscape: Landscape, box: Box, end_px: float) -> f
 
     Each term is the horizontal distance from the stone's end to the joint below
     (:func:`joints_below`) over the width of the stone that ends there; IWR is the mean of the
-    terms that exist, each clipped to [0, 1].  A corner nearer than `end_px` to the wall's end is
-    that end, not a joint.
+    terms that exist, each clipped to [0, 1].  A corner no farther than `end_px` from the wall's
+    end is that end, not a joint.
     """
     if box.bottom == 0:
         return NO_JOINT

@@ -80,7 +80,7 @@ def neighbour_height_ratio(labels, stone, other_heights):
 
 
 def interlocking(labels, stone, end_px):
-    """Eq. 9 as DESIGN 4.5 mends it; corners nearer to an end of the wall than end_px are none."""
+    """Eq. 9 as DESIGN 4.5 mends it; corners up to end_px from an end of the wall are none."""
     me = extent_of(stone)
     if me.y0 == 0:
         return 0.5

@@ -51,7 +51,7 @@ class DropTerms(NamedTuple):
     height_px: float
     slack_px: float  # how far a stone may stand out over the wall's height: settling may sink it
     clearance_px: float  # how far it is lifted from where it touches
-    # width of the narrowest stone: nearer to an end of the wall there are no joints
+    # width of the narrowest stone: no farther from an end of the wall there are no joints
     narrowest_px: float
     mean_height_px: float  # of the stones: the units of the costs
     mean_area_px: float
