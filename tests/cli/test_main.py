@@ -207,7 +207,7 @@ def test_version_says_which_kernels_run(run, monkeypatch):
     said = f"drystone {version('drystone')} (kernels: {describe()})\n"
     assert run("--version").out == said
     monkeypatch.setenv("DRYSTONE_KERNELS", "fortran")
-    run("--version").refused("E143", "fortran")
+    run("--version").refused("E143", "compiled, not 'fortran'. Set it to auto or python;")
     monkeypatch.setenv("DRYSTONE_KERNELS", "")
     assert run("--version").code == 0
 
