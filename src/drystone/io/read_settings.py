@@ -45,9 +45,9 @@ class ReadSettings:
         The classes of annotations that are stones; empty leaves out those whose names say
         something else (a marker, the ground …).
     max_image_mpx : float
-        Largest picture that is decoded, in millions of pixels.
+        Largest picture that is decoded, in millions of pixels; above 0, up to 1e6.
     px_per_m : float or None
-        Px in a metre at which outlines of a drawing or mesh are drawn; None is such that the
+        Px in a metre, up to 1e9, at which a drawing or mesh is drawn; None is such that the
         longer side of the median stone has about 160 px.  Pictures, and annotations in px of an
         image, keep their own px.
     unit : {"px", "mm", "cm", "m", "in", "ft"}

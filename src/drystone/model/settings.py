@@ -75,19 +75,25 @@ def ranged(
     above: float | None = None,
     most: float | None = None,
     below: float | None = None,
+    within: tuple[float | str, ...] | None = None,
 ) -> Any:
     """Return the field of a number with its range, which :class:`Ranged` checks.
 
-    The ends `least` and `most` are allowed themselves, `above` and `below` are not.  A default that
-    is an int is that of a whole number.
+    The ends `least` and `most` are allowed themselves, `above` and `below` are not; nor is more
+    than the product of other settings `within`.  A default that is an int is that of a whole
+    number.
     """
-    ends = {"least": least, "above": above, "most": most, "below": below}
+    ends = {"least": least, "above": above, "most": most, "below": below, "within": within}
     allowed = {name: end for name, end in ends.items() if end is not None}
     return dataclasses.field(default=default, metadata=allowed)
 
 
-def range_text(allowed: Mapping[str, float]) -> str:
+def range_text(allowed: Mapping[str, Any]) -> str:
     """Write a range as in mathematics, or as a bound where it has one end."""
+    if "within" in allowed:
+        ends = {name: end for name, end in allowed.items() if name != "within"}
+        parts = (f"`{one}`" if isinstance(one, str) else f"{one:g}" for one in allowed["within"])
+        return f"{range_text(ends)} and at most {' times '.join(parts)}"
     low = allowed.get("least", allowed.get("above"))
     high = allowed.get("most", allowed.get("below"))
     if low is None or high is None:
@@ -104,15 +110,19 @@ class Ranged:
     """
 
     def __post_init__(self) -> None:
-        for field in dataclasses.fields(self):  # type: ignore[arg-type]
+        # What others are measured by comes first.
+        fields = dataclasses.fields(self)  # type: ignore[arg-type]
+        for field in sorted(fields, key=lambda one: "within" in one.metadata):
             value, allowed = getattr(self, field.name), field.metadata
             if get_origin(field.type) is Literal and value not in get_args(field.type):
                 choices = ", ".join(map(repr, get_args(field.type)))
                 raise ValueError(f"{field.name} must be one of {choices}, not {value!r}")
+            within = (vars(self).get(one, one) for one in allowed.get("within", (math.inf,)))
             # Said so that what is not a number is out of every range.
             if allowed and not (
                 allowed.get("least", -math.inf) <= value <= allowed.get("most", math.inf)
                 and allowed.get("above", -math.inf) < value < allowed.get("below", math.inf)
+                and value <= math.prod(within)
             ):
                 raise ValueError(f"{field.name} must be {range_text(allowed)}, not {value}")
 
