@@ -169,7 +169,7 @@ def test_settings_that_cannot_be_are_blamed_on_their_file(rubble, tmp_path, run)
         ("mu = -1.0", "E123", "{}: mu must be in (0, 1e+06], not -1.0. Change mu."),
         ("bugdet = 1", "E123", "{}: there is no setting 'bugdet'. Did you mean `search.budget`?"),
         ("[stop]\nfilling = 2.0", "E123", "{} [stop]: filling must be in (0, 1]"),
-        ("[stop]\nfailures = 'five'", "E123", "{}: stop.failures = 'five' has the wrong type."),
+        ("[stop]\nfailures = 'five'", "E123", "{}: stop.failures must be a whole number, not"),
         ("orientations = 'north'", "E122", "{}: 'north' is not a set of orientations."),
         ("mu = 1e308", "E123", "{}: mu must be a finite number up to 1e12"),
         ("selection_rule = 'nobody'\n[search]\nbudget = 1\n", "E146", "{}: there is no policy"),

@@ -4,6 +4,7 @@ from dataclasses import dataclass, fields
 from typing import Any, Literal, get_args
 
 from drystone.errors import UsageError
+from drystone.model.settings import typed
 
 Pieces = Literal["auto", "keep-largest", "split", "error"]
 Holes = Literal["fill", "keep"]
@@ -14,6 +15,7 @@ MOST_PX_PER_M = 1e9
 """A larger scale is none: a px would be less than a nanometre."""
 
 
+@typed
 @dataclass(frozen=True, kw_only=True)
 class ReadSettings:
     """How to read stones from a picture (DESIGN 4.1).

@@ -8,7 +8,7 @@ from typing import Any, Literal
 
 from drystone.clusters import ClusterSettings
 from drystone.errors import UsageError
-from drystone.model.settings import Ranged, check_finite, ranged, updated
+from drystone.model.settings import Ranged, check_finite, ranged, typed, updated
 from drystone.model.wedge_shape import WedgeSettings
 from drystone.placement.settings import PlacementSettings
 from drystone.planner.search_settings import (
@@ -165,6 +165,7 @@ class PlannerSettings(Ranged):
             del values["courses"], values["laying"]
         return values | {"ban": list(self.ban), "pin": list(self.pin)}
 
+    @typed
     def updated(self, changes: Mapping[str, Any]) -> "PlannerSettings":
         """Return settings with some values replaced.
 
