@@ -66,7 +66,9 @@ def written_table(name):
     lines = [f"| name | {' | '.join(columns)} | meaning |", "|---" * (len(columns) + 2) + "|"]
     ends = {field.name: field.metadata for field in dataclasses.fields(kind)}
     for names, text in explained_rows(name, kind):
-        ranges = dict.fromkeys(range_text(ends[one]) for one in names if ends[one])
+        ranges = dict.fromkeys(
+            end for one in names if ends[one] for end in range_text(ends[one]).split(" and ")
+        )
         said = " ".join([text, *(f"{one[0].upper()}{one[1:]}." for one in ranges)])
         values = [
             # TOML lacks None.

@@ -2,10 +2,13 @@
 
 import doctest
 import importlib
+import inspect
+import pickle
 import pkgutil
 import re
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import drystone
@@ -37,8 +40,44 @@ def test_every_public_name_is_there():
         drystone.wonder  # noqa: B018
 
 
+def test_an_argument_of_the_wrong_type_is_a_type_error_that_names_it():
+    functions = [getattr(ds, one) for one in ds.__all__ if one[0].islower() and one != "generate"]
+    assert len(functions) > 13
+    for called in functions:
+        first, *rest = inspect.signature(called).parameters.values()
+        more = [object() for one in rest if one.default is one.empty]
+        with pytest.raises(TypeError, match=f"^{first.name} must be .*, not <object"):
+            called(object(), *more)
+        assert pickle.dumps(called)  # it is where it says that it is
+    stones = rubble()
+    for text, called in (
+        ("stones must be StoneSet, not [<Stone 1:", lambda: ds.plan_wall(list(stones), 60, 20)),
+        ("width must be a number, not '60'", lambda: ds.plan_wall(stones, "60", 20)),
+        ("seed must be a whole number, not True", lambda: ds.plan_wall(stones, 6, 2, seed=True)),
+        ("site must be Site, not (60, 20)", lambda: ds.Planner(stones, (60, 20))),
+        ("each of stones must be Stone, not 1", lambda: ds.StoneSet([1])),
+        ("width_px must be a whole number, not 60.5", lambda: ds.Site(60.5, 20)),
+        ("label must be a list, not 'stone'", lambda: ds.ReadSettings(label="stone")),
+        ("changes must be Mapping, not None", lambda: ds.PlannerSettings().updated(None)),
+        ("two_sided must be true or false, not 'no'", lambda: ds.PlannerSettings(two_sided="no")),
+    ):  # fmt: skip
+        with pytest.raises(TypeError, match=re.escape(text)):
+            called()
+
+
+def test_numbers_of_numpy_are_numbers():
+    wall = {"seed": np.uint8(1), "budget": np.int64(1), "n_jobs": np.int8(1), "scale": 1.0}
+    plan = ds.plan_wall(rubble(), np.int64(100), np.float32(36), **wall).plan
+    assert plan == ds.plan_wall(rubble(), 100, 36, seed=1, budget=1, scale=1.0).plan
+    made = ds.PlannerSettings(mu=np.float64(0.5), ban=[np.uint8(3)])
+    for one in (made, made.updated({"mu": np.float32(0.5), "ban": np.array([3])})):
+        assert (one.mu, one.ban, type(one.mu), type(one.ban[0])) == (0.5, (3,), float, int)
+
+
 @pytest.mark.parametrize("package", ["drystone", "drystone_lab"])
 def test_the_examples_of_the_docstrings_run(package):
+    for name in drystone._HOMES:
+        vars(drystone).pop(name, None)  # what was asked for would count as the package's own
     names = [package, *(name for name in MODULES if name.startswith(f"{package}."))]
     found = {name: doctest.testmod(importlib.import_module(name)) for name in names}
     assert [name for name, one in found.items() if one.failed] == []

@@ -90,5 +90,9 @@ def __getattr__(name: str) -> Any:
     if name == "generate":
         return import_module("drystone.generate")
     if name in _HOMES:
-        return getattr(import_module(_HOMES[name]), name)
+        found = getattr(import_module(_HOMES[name]), name)
+        if not isinstance(found, type):
+            found = import_module("drystone.model.settings").typed(found)
+            found.__module__ = __name__  # where pickles look for it
+        return globals().setdefault(name, found)
     raise AttributeError(f"module 'drystone' has no attribute {name!r}")

@@ -131,14 +131,14 @@ def meant(word: str, known: Iterable[str], before: str = "") -> str:
     return f"Did you mean `{before}{names[near[0]]}`? " if near else ""
 
 
-def extra(package: str, does: str, where: str, name: str, title: str = "") -> Any:
-    """Return a package that is an extra, so it is loaded only when it is needed (E305)."""
+def extra(module: str, does: str, where: str, name: str, code: str = "E305", cure: str = "") -> Any:
+    """Return a package that is an extra, so it is loaded only when it is needed."""
     try:
-        return import_module(package)
+        return import_module(module)
     except ImportError as error:
-        what = f"{title or package} is not installed, and it {does}."
-        cure = f"Install it with `pip install drystone[{name}]`."
-        raise UsageError("E305", what, where=where, cure=cure) from error
+        what = f"{module.partition('.')[0]} is not installed, and it {does}."
+        cure = f'Install it with `pip install "drystone[{name}]"`{cure}.'
+        raise UsageError(code, what, where=where, cure=cure) from error
 
 
 def not_written(error: OSError) -> PlanError:
@@ -285,7 +285,7 @@ CODES = {
     "W113": "Specks were left out.",
     "W114": "The picture was read as a binary mask.",
     "W115": "Colours were read as ids; says by which rule.",
-    "W116": "`skip` names an id that no stone has, nor a piece that became one.",
+    "W116": "`skip` or `keep` names an id that no stone has, nor a piece that became one.",
     "W117": "Files in a folder of masks that are not pictures.",
     "W118": "A mask in a folder is stone to all its edges.",
     "W119": "What a file of outlines left to decide.",

@@ -6,11 +6,10 @@ support, so what it reaches is a yardstick for filling alone.
 """
 
 import time
-from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from drystone.errors import UsageError
+from drystone.errors import extra
 from drystone.kernels.raster import turn
 from drystone.model.stone import StoneSet
 from drystone.poses import PoseBook
@@ -54,12 +53,7 @@ def run(settings: BenchSettings) -> tuple[Table, ...]:
 
 def load_packer() -> Any:
     """Return spyrrow; it is an extra, so it is loaded only when it is needed."""
-    try:
-        return import_module("spyrrow")
-    except ImportError as error:
-        what = "spyrrow is not installed, and it packs the strips."
-        cure = "Install it with `pip install drystone[bench]`."
-        raise UsageError("E305", what, where="packing", cure=cure) from error
+    return extra("spyrrow", "packs the strips", "packing", "bench")
 
 
 def packed_width_px(

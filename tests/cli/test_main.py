@@ -207,7 +207,7 @@ def test_version_says_which_kernels_run(run, monkeypatch):
     said = f"drystone {version('drystone')} (kernels: {describe()})\n"
     assert run("--version").out == said
     monkeypatch.setenv("DRYSTONE_KERNELS", "fortran")
-    run("--version").refused("E143", "fortran")
+    run("--version").refused("E143", "compiled, not 'fortran'. Set it to auto or python;")
     monkeypatch.setenv("DRYSTONE_KERNELS", "")
     assert run("--version").code == 0
 
@@ -241,8 +241,11 @@ def test_commands_of_the_package_come_first_and_look_for_no_others(monkeypatch):
     assert build_parser(words).parse_args(words).command == "stones"
 
 
-def test_a_lab_that_is_missing_or_broken(run, monkeypatch):
+def test_a_lab_that_is_missing_or_broken(run, monkeypatch, tmp_path):
+    (tmp_path / "leaves.py").write_text("raise SystemExit(3)")
+    monkeypatch.syspath_prepend(tmp_path)
     for values, said in (
+        ({"bench": "leaves:BENCH"}, "leaves:BENCH: SystemExit: 3"),
         ({}, "it is not installed."),
         ({"bench": "gone_lab:BENCH"}, "gone_lab:BENCH: ModuleNotFoundError: No module named"),
         ({"bench": "drystone_lab.commands:NONE"}, "NONE: AttributeError: "),

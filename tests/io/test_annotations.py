@@ -118,7 +118,7 @@ def test_coco_of_several_images_needs_a_name(tmp_path):
     content["annotations"].append(
         {"id": 1, "image_id": 9, "segmentation": [[5, 5, 45, 5, 45, 55, 5, 55]]}
     )
-    for name, text in ((None, r"2 images.*--image.*a/photo.jpg, other.jpg"), ("third", "'third'")):
+    for name, text in (("", r"2 images.*--image.*a/photo.jpg, other.jpg"), ("third", "'third'")):
         with pytest.raises(InputError, match=rf"E115.*{text}"):
             read(tmp_path, content, ReadSettings(image=name))
     for name in ("photo.jpg", "a/photo.jpg", "7"):

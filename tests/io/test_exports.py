@@ -259,6 +259,6 @@ def test_extras_that_are_not_installed(tmp_path, monkeypatch):
     for name, text, package, extra in (("a.dxf", "0\nSECTION\n", "ezdxf", "cad"),
                                        ("a.ply", "ply\n", "trimesh", "mesh")):  # fmt: skip
         monkeypatch.setitem(sys.modules, package, None)
-        said = rf"E305 .*{package} is not installed.*pip install drystone\[{extra}\]"
+        said = rf"E305 .*{package} is not installed.*pip install \"drystone\[{extra}\]\""
         with pytest.raises(UsageError, match=said):
             read(tmp_path, text, name)

@@ -100,7 +100,7 @@ def test_colours_are_ids_and_alpha_is_ignored(tmp_path, alpha):
     [
         two_stones(), two_stones().astype(np.int64), two_stones().astype(np.float64),
         np.asfortranarray(two_stones()), two_stones()[None], two_stones()[:, :, None],
-        two_stones().astype(">u4"), rgb(two_stones()),
+        two_stones().astype(">u4"), two_stones().astype(np.uint64), rgb(two_stones()),
     ],
 )  # fmt: skip
 def test_arrays_and_npy(tmp_path, array):

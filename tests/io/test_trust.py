@@ -77,7 +77,7 @@ OWN, LONG = InputError("E110", "too large"), "x" * 100_000
     ("raised", "text"),
     [
         *((error, "E106 a: damaged") for error in (RecursionError(), ZeroDivisionError(LONG),
-                                                   AttributeError("a"), KeyError(), OSError())),
+                                                   AttributeError("a"), SystemExit(), OSError())),
         (MemoryError(), "E110 a: there is not enough memory"),
         (OWN, "E110"),
         (KeyboardInterrupt(), None),

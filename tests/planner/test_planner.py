@@ -248,8 +248,8 @@ def test_values_of_the_wrong_type_or_out_of_range_are_refused(changes):
         ({"pin": [1, 3], "ban": [3, 4]}, "E123", "the same stones: 3.", "pin or ban"),
         ({"xyz": 1}, "E123", "'xyz'", "sampling"),
         ({"placement": {"wonder": 1}}, "E123", "'placement.wonder'", "reach"),
-        ({"sampling": "some"}, "E123", "sampling = 'some'", "twofold"),
-        ({"stabilise": {"method": "glue"}}, "E123", "stabilise.method = 'glue'", "wedge"),
+        ({"sampling": "some"}, "E123", "sampling must be one of", "sampling"),
+        ({"stabilise": {"method": "glue"}}, "E123", "stabilise.method must be", "method"),
         ({"orientations": "north"}, "E122", "north", ""),
     ],
 )

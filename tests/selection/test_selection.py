@@ -175,7 +175,7 @@ def test_nonsense_is_named(said):
 
 
 def test_errors_are_named_but_an_interrupt_is_none_of_its_errors():
-    for error in (KeyError("area"), RuntimeError("no"), AssertionError()):
+    for error in (KeyError("area"), RuntimeError("no"), AssertionError(), SystemExit(3)):
         with pytest.raises(UsageError, match="E147 .*'x' raised " + type(error).__name__) as caught:
             asked(error)
         assert caught.value.__cause__ is error

@@ -19,7 +19,7 @@ from drystone.errors import (
     UsageError,
     not_written,
 )
-from drystone.kernels.backend import CHOICES, VARIABLE, fault
+from drystone.kernels.backend import VARIABLE, fault
 from drystone.search.interrupts import Terminated, terminable
 from drystone.search.processes import RARELY
 
@@ -75,7 +75,7 @@ def _called(words: Sequence[str]) -> int:
         sys.stdout.reconfigure(errors="backslashreplace")
     if os.environ.get(VARIABLE) and (wrong := fault()) is not None:
         what = f"the kernels asked for are not there: {wrong}."
-        cure = f"Set it to one of {', '.join(CHOICES)}, or install with a compiler."
+        cure = "Set it to auto or python; compiled needs an installation with a compiler."
         raise UsageError("E143", what, where=VARIABLE, cure=cure)
     arguments = build_parser(words).parse_args(words)
     named = [Path(one) for one in vars(arguments).values() if isinstance(one, str)]

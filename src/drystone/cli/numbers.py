@@ -118,7 +118,7 @@ def parse_wall(text: str, px_per_m: float | None) -> tuple[float, float]:
     """
     sides = _WALL.fullmatch(text.strip().replace(" ", ""))
     if sides is None:
-        raise _no_wall(f"{text!r} is not the size of a wall.", _SIZES)
+        raise _no_wall(f"{text!r} is not the size of a wall.")
     values = _plain(sides[1], text), _plain(sides[3], text)
     units = sides[2] or sides[4], sides[4]
     metric = [unit in METRES for unit in units]
@@ -152,7 +152,7 @@ def _plain(number: str, text: str) -> float:
     return float(number.replace(",", "."))
 
 
-def _no_wall(what: str, cure: str = "") -> UsageError:
+def _no_wall(what: str, cure: str = _SIZES) -> UsageError:
     return UsageError("E127", what, where="--wall", cure=cure)
 
 

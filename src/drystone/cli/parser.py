@@ -77,7 +77,7 @@ def found_commands() -> dict[str, Command]:
     for entry in sorted(entry_points(group=GROUP)):
         try:
             commands[entry.name] = entry.load()
-        except Exception as error:
+        except (Exception, SystemExit) as error:
             why = f"{entry.value}: {type(error).__name__}: {error}"
             commands[entry.name] = _broken(entry.name, why)
     return commands

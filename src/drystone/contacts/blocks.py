@@ -5,11 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from drystone.contacts.interfaces import PointContacts, find_interfaces, interfaces_in
-from drystone.errors import InputError, LabelImageError, Notice, counted
+from drystone.errors import InputError, Notice, counted
 from drystone.kernels.label_runs import label_runs, runs_in_pieces
 from drystone.kernels.patches import painted_patch
 from drystone.model.placement import Placement, Wedge
-from drystone.model.wall import Labels
+from drystone.model.wall import Labels, picture_of_ids
 from drystone.statics.model import Block, RigidBlockModel
 
 LARGEST_MU = 1e300
@@ -62,10 +62,7 @@ def model_from_labels(labels: Labels, mu: float = 0.58) -> ImageModel:
     >>> picture.model.blocks[0].centroid, picture.ground_row, picture.notices[0].code
     ((1.0, 1.0), 2, 'W301')
     """
-    if labels.ndim != 2 or labels.dtype.kind not in "iu" or (labels.size and labels.min() < 0):
-        what = f"an array of shape {labels.shape} and type {labels.dtype} is not a picture of ids."
-        cure = "Give a two-dimensional array of integers: 0 for nothing, ids above 0."
-        raise LabelImageError("E301", what, where="label image", cure=cure)
+    labels = picture_of_ids(labels)
     check_mu(mu)
     filled = np.flatnonzero((labels > 0).any(axis=1))
     height = int(filled[-1]) + 1 if filled.size else labels.shape[0]

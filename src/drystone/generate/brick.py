@@ -17,11 +17,11 @@ class BrickSettings:
     Parameters
     ----------
     count : int
-        Number of whole bricks.
+        Number of whole bricks; with `halves` at least one.
     height_px : int
-        Height of a brick.
+        Height of a brick, at least 1 px.
     aspect : float
-        Width over height, 2 or 3 for usual bricks; the width is rounded to whole px.
+        Width over height, 2 or 3 for usual bricks; the width is rounded to whole px, at least 2.
     halves : int
         Number of half bricks, as wide as floor(width / 2).
     """

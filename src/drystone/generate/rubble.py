@@ -34,7 +34,7 @@ class RubbleSettings:
     count : int
         Number of stones, at least one per course.
     width_px, height_px : float
-        Of the wall that they are for.
+        Of the wall that they are for, at least 4 px for each course, and for each stone of one.
     area_ratio : float
         Area of all stones over the area of the wall, above 0, at most 0.95.
     courses : int

@@ -155,7 +155,7 @@ def foreign(failed: Callable[[str], DrystoneError]) -> Iterator[None]:
         what = "there is not enough memory for what is in this file."
         where = failed("").where
         raise InputError("E110", what, where=where, cure="Reduce it or crop it.") from error
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         # Where an object lies in memory is another place in every run.
         reason = " ".join(re.sub(r" at 0x[0-9a-f]+", "", str(error)).split())
         raise failed(reason[:_LONGEST_REASON] or type(error).__name__) from error

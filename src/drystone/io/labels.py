@@ -203,10 +203,10 @@ _LEAST_PX = 10
 
 
 def _ids_of_numbers(ids: NDArray[Any], background: int) -> IdImage:
-    low, high = int(ids.min()), int(ids.max())
-    if low < 0 or high > MAX_ID:
+    if int(ids.min()) < 0 or int(ids.max()) > MAX_ID:
         bad = (ids < 0) | (ids > MAX_ID)
-        raise _not_ids(f"{int(bad.sum())} px are {low} ... {high} outside 0 ... 2^32-1", bad)
+        found = " ... ".join(map(str, dict.fromkeys((ids[bad].min(), ids[bad].max()))))
+        raise _not_ids(f"{int(bad.sum())} px are {found}, outside 0 ... 2^32-1", bad)
     return IdImage(ids, background)
 
 

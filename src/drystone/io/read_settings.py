@@ -4,6 +4,7 @@ from dataclasses import dataclass, fields
 from typing import Any, Literal, get_args
 
 from drystone.errors import UsageError
+from drystone.model.settings import typed
 
 Pieces = Literal["auto", "keep-largest", "split", "error"]
 Holes = Literal["fill", "keep"]
@@ -14,6 +15,7 @@ MOST_PX_PER_M = 1e9
 """A larger scale is none: a px would be less than a nanometre."""
 
 
+@typed
 @dataclass(frozen=True, kw_only=True)
 class ReadSettings:
     """How to read stones from a picture (DESIGN 4.1).
@@ -45,9 +47,9 @@ class ReadSettings:
         The classes of annotations that are stones; empty leaves out those whose names say
         something else (a marker, the ground …).
     max_image_mpx : float
-        Largest picture that is decoded, in millions of pixels.
+        Largest picture that is decoded, in millions of pixels; above 0, up to 1e6.
     px_per_m : float or None
-        Px in a metre at which outlines of a drawing or mesh are drawn; None is such that the
+        Px in a metre, up to 1e9, at which a drawing or mesh is drawn; None is such that the
         longer side of the median stone has about 160 px.  Pictures, and annotations in px of an
         image, keep their own px.
     unit : {"px", "mm", "cm", "m", "in", "ft"}

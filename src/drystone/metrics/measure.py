@@ -4,13 +4,11 @@ import math
 from collections.abc import Collection
 from dataclasses import dataclass
 
-import numpy as np
-
-from drystone.errors import LabelImageError, UsageError
+from drystone.errors import UsageError
 from drystone.metrics.frame import frame_wall
 from drystone.metrics.paths import horizontal_arrangement, joint_mask, vertical_arrangement
 from drystone.metrics.shape import flush_deviation, level_deviation, stone_sizes
-from drystone.model.wall import Labels
+from drystone.model.wall import Labels, picture_of_ids
 
 MOST_PX = 200_000_000
 """Of the picture that is measured, with what is missing of the wall at its ends."""
@@ -98,7 +96,7 @@ def measure_labels(
         what = f"a wall of {wall_px[0]:g} x {wall_px[1]:g} px has no room."
         cure = "Give a wall with a positive, finite width and height."
         raise UsageError("E121", what, where="--wall", cure=cure)
-    labels = _ids(labels)
+    labels = picture_of_ids(labels)
     if wall_px is not None and wall_px[0] * labels.shape[0] > MOST_PX:
         raise UsageError(
             "E121",
@@ -124,14 +122,3 @@ def measure_labels(
         width=wall_px[0],
         height=wall_px[1],
     )
-
-
-def _ids(labels: Labels) -> Labels:
-    """Return a picture of ids as an array; refuse scaled values, colours and masks (E301)."""
-    ids = np.asarray(labels)
-    signed = ids.dtype.kind == "i"  # what the planner measures again and again is not
-    if ids.ndim != 2 or ids.dtype.kind not in "iu" or (signed and ids.size and ids.min() < 0):
-        what = f"an array of shape {ids.shape} and type {ids.dtype} is not a picture of ids."
-        cure = "Give a two-dimensional array of whole numbers: 0 for nothing, ids above 0."
-        raise LabelImageError("E301", what, where="labels", cure=cure)
-    return ids

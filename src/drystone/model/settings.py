@@ -1,25 +1,74 @@
-"""Frozen settings from nested mappings, as TOML files and options give them."""
+"""Frozen settings from nested mappings, as TOML files and options give them; types of values."""
 
 import dataclasses
+import functools
+import inspect
 import math
+import os
 import re
+import reprlib
 import types
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
+from operator import index
+from pathlib import Path
 from typing import Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
+
+import numpy as np
 
 from drystone.errors import UsageError, meant
 
 Settings = TypeVar("Settings")
+Called = TypeVar("Called", bound=Callable[..., Any])
 
-_KINDS: Mapping[Any, str] = types.MappingProxyType(
-    {
-        bool: "true or false",
-        int: "a whole number",
-        float: "a number",
-        str: "a text",
-        types.NoneType: "nothing",
-    }
-)
+_KINDS = {
+    bool: "true or false", int: "a whole number", float: "a number", str: "a text",
+    tuple: "a list", types.NoneType: "None",
+}  # fmt: skip
+
+
+def of_type(value: Any, hint: Any, name: str) -> Any:
+    """Return a value of a type: numbers of NumPy are made Python's, and lists tuples of one type.
+
+    TypeError: it is of another type; ValueError: it is none of the choices.
+    """
+    kinds = get_args(hint) if get_origin(hint) in (Union, types.UnionType) else (hint,)
+    for one in kinds:
+        kind, of = get_origin(one) or (os.PathLike if one is Path else one), get_args(one)
+        if kind in (int, float):
+            takes = "__index__" if kind is int else "__float__"
+            # A truth value is none, though it is one to Python.
+            if hasattr(value, takes) and not isinstance(value, bool):
+                return index(value) if kind is int else float(value)
+        elif kind is Literal:
+            if value not in of:
+                raise ValueError(f"{name} must be one of {str(of)[1:-1]}, not {value!r}")
+            return value
+        elif kind is tuple and isinstance(value, Collection) and not isinstance(value, str):
+            return tuple(of_type(each, of[0], f"each of {name}") for each in value)
+        elif kind is Any or isinstance(value, kind) or (kind is np.ndarray and np.ndim(value)):
+            return value
+    said = " or ".join(_KINDS.get(get_origin(one) or one) or one.__name__ for one in kinds)
+    raise TypeError(f"{name} must be {said}, not {reprlib.repr(value)}")
+
+
+def typed(called: Called) -> Called:
+    """Let a function, or a class, have its arguments as :func:`of_type` returns them."""
+    if isinstance(called, type):
+        called.__init__ = typed(called.__init__)  # type: ignore[misc]
+        return called
+    signature, hints = inspect.signature(called), functools.cache(get_type_hints)
+
+    @functools.wraps(called)
+    def checked(*args: Any, **kwargs: Any) -> Any:
+        given = signature.bind(*args, **kwargs)
+        for name, value in given.arguments.items():
+            hint = hints(called).get(name, Any)
+            if get_origin(hint) is not Literal:  # what is none of the choices has a code
+                given.arguments[name] = of_type(value, hint, name)
+        return called(*given.args, **given.kwargs)
+
+    return checked  # type: ignore[return-value]
+
 
 _LARGEST = 1e12
 _MOST = 2**63 - 1
@@ -75,19 +124,25 @@ def ranged(
     above: float | None = None,
     most: float | None = None,
     below: float | None = None,
+    within: tuple[float | str, ...] | None = None,
 ) -> Any:
     """Return the field of a number with its range, which :class:`Ranged` checks.
 
-    The ends `least` and `most` are allowed themselves, `above` and `below` are not.  A default that
-    is an int is that of a whole number.
+    The ends `least` and `most` are allowed themselves, `above` and `below` are not; nor is more
+    than the product of other settings `within`.  A default that is an int is that of a whole
+    number.
     """
-    ends = {"least": least, "above": above, "most": most, "below": below}
+    ends = {"least": least, "above": above, "most": most, "below": below, "within": within}
     allowed = {name: end for name, end in ends.items() if end is not None}
     return dataclasses.field(default=default, metadata=allowed)
 
 
-def range_text(allowed: Mapping[str, float]) -> str:
+def range_text(allowed: Mapping[str, Any]) -> str:
     """Write a range as in mathematics, or as a bound where it has one end."""
+    if "within" in allowed:
+        ends = {name: end for name, end in allowed.items() if name != "within"}
+        parts = (f"`{one}`" if isinstance(one, str) else f"{one:g}" for one in allowed["within"])
+        return f"{range_text(ends)} and at most {' times '.join(parts)}"
     low = allowed.get("least", allowed.get("above"))
     high = allowed.get("most", allowed.get("below"))
     if low is None or high is None:
@@ -98,21 +153,25 @@ def range_text(allowed: Mapping[str, float]) -> str:
 
 
 class Ranged:
-    """Settings that check themselves: choices by their types, numbers by their ranges.
+    """Settings that check themselves: by their types, numbers by their ranges.
 
-    ValueError: a value is not one of the choices, or out of its range.
+    TypeError: a value is of another type; ValueError: it is not one of the choices, or out of its
+    range.
     """
 
     def __post_init__(self) -> None:
-        for field in dataclasses.fields(self):  # type: ignore[arg-type]
-            value, allowed = getattr(self, field.name), field.metadata
-            if get_origin(field.type) is Literal and value not in get_args(field.type):
-                choices = ", ".join(map(repr, get_args(field.type)))
-                raise ValueError(f"{field.name} must be one of {choices}, not {value!r}")
+        # What others are measured by comes first.
+        fields = dataclasses.fields(self)  # type: ignore[arg-type]
+        for field in sorted(fields, key=lambda one: "within" in one.metadata):
+            value = of_type(getattr(self, field.name), field.type, field.name)
+            object.__setattr__(self, field.name, value)
+            allowed = field.metadata
+            within = (vars(self).get(one, one) for one in allowed.get("within", (math.inf,)))
             # Said so that what is not a number is out of every range.
             if allowed and not (
                 allowed.get("least", -math.inf) <= value <= allowed.get("most", math.inf)
                 and allowed.get("above", -math.inf) < value < allowed.get("below", math.inf)
+                and value <= math.prod(within)
             ):
                 raise ValueError(f"{field.name} must be {range_text(allowed)}, not {value}")
 
@@ -132,30 +191,15 @@ def check_finite(settings: Any) -> None:
 
 def _checked(value: Any, hint: Any, where: str) -> Any:
     """Return a value of the declared type, or raise UsageError."""
-    if get_origin(hint) is Literal:
-        allowed = get_args(hint)
-        if value not in allowed:
-            raise _refused(f"{where} = {value!r}.", f"Choose from {allowed}.")
-        return value
-    if isinstance(value, float) and not math.isfinite(value):
-        raise _refused(f"{where} = {value}.", "Give a finite number.")
-    if isinstance(value, int) and abs(value) > _MOST:
-        raise _refused(f"the number of {where} is too large.", f"Give one of at most {_MOST}.")
-    if get_origin(hint) is tuple:
-        kind = get_args(hint)[0]
-        several = value if isinstance(value, list | tuple) else [None]
-        if any(not isinstance(one, kind) or isinstance(one, bool) for one in several):
-            wrong = f"{where} = {value!r} has the wrong type."
-            wanted = "texts" if kind is str else "whole numbers"
-            raise _refused(wrong, f"Give a list of {wanted}.")
-        return tuple(_checked(one, kind, where) for one in several)
-    kinds = get_args(hint) if get_origin(hint) in (Union, types.UnionType) else (hint,)
-    if float in kinds and isinstance(value, int) and not isinstance(value, bool):
-        return float(value)
-    if not isinstance(value, kinds) or (isinstance(value, bool) and bool not in kinds):
-        wanted = " or ".join(_KINDS[kind] for kind in kinds)
-        raise _refused(f"{where} = {value!r} has the wrong type.", f"Give {wanted}.")
-    return value
+    for one in value if isinstance(value, list | tuple) else (value,):
+        if isinstance(one, float) and not math.isfinite(one):
+            raise _refused(f"{where} = {one}.", "Give a finite number.")
+        if isinstance(one, int) and abs(one) > _MOST:
+            raise _refused(f"the number of {where} is too large.", f"Give one of at most {_MOST}.")
+    try:
+        return of_type(value, hint, where)
+    except (TypeError, ValueError) as error:
+        raise _refused(f"{error}.", f"Change {where}.") from None
 
 
 def _refused(message: str, cure: str) -> UsageError:

@@ -4,11 +4,13 @@ import math
 from dataclasses import dataclass, field
 
 from drystone.errors import UsageError
+from drystone.model.settings import typed
 
 MAX_SITE_PX = 50_000_000
 """A larger wall fills the memory; its stones are many times finer than planning needs."""
 
 
+@typed
 @dataclass(frozen=True)
 class Site:
     """A wall's outer dimensions at the working resolution, on flat ground.
@@ -55,15 +57,15 @@ class Site:
         """Make the site of a wall given in source px: working size floor(size * scale + 0.5).
 
         UsageError: E121: it is too small or too large at this scale; E127: its size is not a finite
-        number; E138: the px in a metre are not positive.
+        number; E138: the px in a metre are not above 0, or more than 1e9.
         """
         if not (math.isfinite(width) and math.isfinite(height)):
             what = f"{width} x {height} px is not a wall size."
             cure = "Give a positive, finite width and height."
             raise UsageError("E127", what, where="--wall", cure=cure)
-        if px_per_m is not None and not 0 < px_per_m < math.inf:
+        if px_per_m is not None and not 0 < px_per_m <= 1e9:
             what = f"{px_per_m} px in a metre is not a scale."
-            cure = "Give a positive number, or none for a wall in px."
+            cure = "Give a number above 0, up to 1e9, or none for a wall in px."
             raise UsageError("E138", what, where="--px-per-m", cure=cure)
         size = working_px(width, scale), working_px(height, scale)
         return cls(*size, scale, px_per_m, (width, height))

@@ -3,7 +3,6 @@
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
-from operator import index
 from typing import Any
 
 import numpy as np
@@ -13,11 +12,13 @@ from drystone.kernels.polygons import Points, area_and_centroid
 from drystone.kernels.raster import Mask
 from drystone.kernels.silhouette import pixel_hull
 from drystone.model.outline import centroid_of, drawn_outline, solid, stone_outline
+from drystone.model.settings import typed
 
 OUTLINE_TOLERANCE_PX = 0.35
 """How far the outline may stay away from the contour of the pixels (DESIGN 4.9)."""
 
 
+@typed  # ids of NumPy would wrap where wedges are numbered after them
 @dataclass(frozen=True, eq=False)
 class Stone:
     """One stone of the source image, immutable.
@@ -55,8 +56,6 @@ class Stone:
 
     def __post_init__(self) -> None:
         mask = np.array(self.mask, dtype=bool)
-        # Ids of NumPy would wrap where wedges are numbered after them.
-        object.__setattr__(self, "id", int(index(self.id)))
         if self.id <= 0:
             raise ValueError(f"id must be positive, not {self.id}")
         if mask.ndim != 2 or not mask.any():
@@ -178,6 +177,7 @@ def writable(name: str) -> str:
     return name.encode("utf-8", "replace").decode()
 
 
+@typed
 @dataclass(frozen=True)
 class StoneSet:
     """The stones to build with, in the order of their ids.

@@ -6,12 +6,24 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from drystone.errors import LabelImageError
 from drystone.kernels.raster import Mask
 from drystone.model.outlines import Outlined, Outlines
 from drystone.model.placement import Placement, Wedge
 from drystone.model.site import Site
 
 Labels = NDArray[np.uint32]
+
+
+def picture_of_ids(labels: Labels) -> Labels:
+    """Return a picture of ids as an array; refuse scaled values, colours and masks (E301)."""
+    ids = np.asarray(labels)
+    fits = ids.ndim == 2 and ids.dtype.kind in "iu"
+    if not fits or (ids.size and (ids.min() < 0 or ids.max() >= 2**63)):
+        what = f"an array of shape {ids.shape} and type {ids.dtype} is not a picture of ids."
+        cure = "Give rows and columns of whole numbers below 2^63: 0 for nothing, ids above 0."
+        raise LabelImageError("E301", what, where="labels", cure=cure)
+    return ids
 
 
 @dataclass(frozen=True, eq=False)

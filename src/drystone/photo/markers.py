@@ -231,7 +231,7 @@ def _meeting(one: tuple[Points, Points], other: tuple[Points, Points]) -> Points
 
 def load_cv2() -> Any:
     """Return OpenCV (E305 without it)."""
-    return extra("cv2", "knows the markers and turns pictures", "photo", "photo", "OpenCV (cv2)")
+    return extra("cv2", "is OpenCV, which finds the markers", "photo", "photo")
 
 
 def opencv_dictionary(name: str) -> Any:

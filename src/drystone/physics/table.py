@@ -1,14 +1,13 @@
 """A tilting table in a rigid-body engine (pymunk): blocks on a ground, gravity that turns."""
 
 from collections.abc import Iterable
-from importlib import import_module
 from math import atan, cos, sin, sqrt
 from typing import Any, Self
 
 import numpy as np
 import shapely
 
-from drystone.errors import UsageError
+from drystone.errors import extra
 from drystone.kernels.polygons import Points
 from drystone.kernels.profiles import Floats
 from drystone.physics.convex import convex_parts, without_straight_corners
@@ -137,9 +136,4 @@ class TiltingTable:
 
 def load_engine() -> Any:
     """Return pymunk; it is an extra, so it is loaded only when it is needed."""
-    try:
-        return import_module("pymunk")
-    except ImportError as error:
-        what = "pymunk is not installed, and the tilt test runs in it."
-        cure = "Install it with `pip install drystone[physics]`."
-        raise UsageError("E305", what, where="tilt test", cure=cure) from error
+    return extra("pymunk", "runs the tilt test", "tilt test", "physics")

@@ -6,6 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from drystone.errors import UsageError
+from drystone.model.settings import typed
 from drystone.model.site import Site
 from drystone.model.stone import StoneSet
 from drystone.model.wall import Wall
@@ -22,6 +24,7 @@ from drystone.planner.vary import WEIGHT_DRAWS, varied
 from drystone.planner.workshop import Workshop
 
 
+@typed
 class Planner:
     """Plans one wall; drive it with :meth:`steps`.
 
@@ -68,6 +71,9 @@ class Planner:
         workshop: Workshop | None = None,
         profile: Profile | None = None,
     ) -> None:
+        if seed < 0:
+            what = f"{seed} is not a seed."
+            raise UsageError("E138", what, where="--seed", cure="Give 0 or more.")
         self.seed = seed
         self.settings = settings or PlannerSettings()
         self.profile = profile or Profile()

@@ -55,8 +55,9 @@ class SearchSettings(Ranged):
     Parameters
     ----------
     budget : int
-        How many walls are built, the first one among them; 1 in the paper.  1000000 leaves it to
-        the time limit, or without one to the number of stones: 32 walls of up to 40, 8 at least.
+        How many walls are built, the first one among them; 1 in the paper, on pixels and with a
+        policy.  1000000 leaves it to the time limit, or without one to the number of stones: 32
+        walls of up to 40, 8 at least.
     passes : int
         How many of them at most are first walls, from seed to seed; then the search goes on from
         the best.
@@ -98,14 +99,9 @@ class SearchSettings(Ranged):
     wedges: int = ranged(6, least=0)
     wedge_below: float = ranged(0.12, least=0)
     warm: float = ranged(0.15, above=0)
-    cold: float = ranged(0.01, above=0)
+    cold: float = ranged(0.01, above=0, within=("warm",))
     cycle: int = ranged(64, least=1)
     patience: int = ranged(12, least=1)
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        if self.cold > self.warm:
-            raise ValueError("cold must not be above warm")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -200,14 +196,9 @@ class CourseSettings(Ranged):
     evaluations: int = ranged(3_000, least=1)
     most_evaluations: int = ranged(1_000_000, least=1)
     temperature: float = ranged(6.0, above=0)
-    coldest: float = ranged(0.05, above=0)
+    coldest: float = ranged(0.05, above=0, within=("temperature", "again"))
     doubt: float = ranged(2.0, least=0)
     again: float = ranged(0.035, above=0, most=1)
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        if self.coldest > self.temperature * self.again:
-            raise ValueError("coldest must not be above temperature times again")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -262,11 +253,6 @@ class LayingSettings(Ranged):
     turn: float = ranged(0.3, least=0)
     rest: float = ranged(0.1, least=0)
     wedge: float = ranged(0.2, least=0)
-    analysed: int = ranged(6, least=1)
+    analysed: int = ranged(6, least=1, within=("judged",))
     judged: int = ranged(10, least=1)
     llc: float = ranged(3.0, least=0)
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        if self.analysed > self.judged:
-            raise ValueError("analysed must not be above judged")

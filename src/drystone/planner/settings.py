@@ -8,7 +8,7 @@ from typing import Any, Literal
 
 from drystone.clusters import ClusterSettings
 from drystone.errors import UsageError
-from drystone.model.settings import Ranged, check_finite, ranged, updated
+from drystone.model.settings import Ranged, check_finite, ranged, typed, updated
 from drystone.model.wedge_shape import WedgeSettings
 from drystone.placement.settings import PlacementSettings
 from drystone.planner.search_settings import (
@@ -54,7 +54,7 @@ class PlannerSettings(Ranged):
         Stones are their pixels at the working resolution, or settle on the outlines of the source
         image (DESIGN 4.9).
     orientations : str
-        ``"quarter"``, ``"sf"``, or a step such as ``"10deg"`` (DESIGN 4.2).
+        ``"quarter"``, ``"sf"``, or a step such as ``"10deg"``, from 0.5 to 360 (DESIGN 4.2).
     orientation_choice : {"candidates", "placement"}
         With several orientations: each is a candidate of its own, or the placement rule picks one
         per stone.
@@ -82,8 +82,8 @@ class PlannerSettings(Ranged):
     ban : tuple of int
         Ids of stones that are not used.
     pin : tuple of int
-        Ids of stones that must be in the wall: they are preferred, and each that is missing counts
-        10 units of merit against a wall.
+        Ids of stones, none of `ban`, that must be in the wall: they are preferred, and each that is
+        missing counts 10 units of merit against a wall.
     clusters, placement, stabilise, settle, wedge, selection, policy, score
         Settings of the stages.
     search, courses, laying, goal, stop
@@ -165,6 +165,7 @@ class PlannerSettings(Ranged):
             del values["courses"], values["laying"]
         return values | {"ban": list(self.ban), "pin": list(self.pin)}
 
+    @typed
     def updated(self, changes: Mapping[str, Any]) -> "PlannerSettings":
         """Return settings with some values replaced.
 

@@ -165,8 +165,9 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
     Raises
     ------
     UsageError
-        E138: the seed is negative, or both `built` and `begin` are given; E123: the budget is less
-        than 1; E120 to E127, E137, E145: the wall, the scale or the stones make no sense together.
+        E138: the seed or the time is negative, there is no process, or both `built` and `begin` are
+        given; E123: the budget is less than 1; E120 to E127, E137, E145: the wall, the scale or the
+        stones make no sense together.
     PlanError
         E207: a wall of `state` cannot be built again.
 
@@ -179,13 +180,10 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
     >>> result.success, len(result.plan.steps)
     (True, 6)
     """
-    if not isinstance(settings, PlannerSettings | None):
-        raise TypeError(
-            f"settings must be PlannerSettings, not {type(settings).__name__}; "
-            "method_settings('best').updated({...}) makes them"
-        )
-    if seed < 0:
-        raise UsageError("E138", f"{seed} is not a seed.", where="--seed", cure="Give 0 or more.")
+    for where, value, least in (("--jobs", n_jobs, 1), ("--time", seconds, 0)):
+        if not value >= least:
+            what = f"{value} makes no sense."
+            raise UsageError("E138", what, where=where, cure=f"Give {least} or more.")
     if built is not None and begin is not None:
         raise UsageError(
             "E138",

@@ -96,7 +96,7 @@ def choice_of(
         return None
     try:
         chosen = policy.choose(tuple(candidates), rng)
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         raise broken(name, f"raised {type(error).__name__}: {error}") from error
     if chosen is None:
         return None

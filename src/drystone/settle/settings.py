@@ -65,7 +65,7 @@ class SettleSettings(Ranged):
 
     method: Method = "energy"
     outline_px: float = ranged(0.35, above=0, most=0.5)
-    clearance_px: float = ranged(0.01, least=1e-4)
+    clearance_px: float = ranged(0.01, least=1e-4, within=(0.25, "contact_px"))
     contact_px: float = ranged(0.1, least=0, most=0.5)
     setback: float = ranged(0.01, least=0, most=0.1)
     lean: float = ranged(0.3, least=0)
@@ -81,8 +81,3 @@ class SettleSettings(Ranged):
     shortlist: int = ranged(24, least=1)
     per_stone: int = ranged(4, least=1)
     trials: int = ranged(20, least=0)
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        if 4 * self.clearance_px > self.contact_px:
-            raise ValueError("contact_px must be at least 4 times clearance_px")

@@ -204,5 +204,5 @@ def _parsed(text: str, option: str) -> tuple[int, tuple[float, float], tuple[flo
         raise UsageError("E138", f"{text!r} is not a force at a point.", where=option, cure=cure)
     x, y, fx, fy = (float(part) for part in found.groups()[1:])
     if not all(isfinite(number) for number in (x, y, fx, fy)):
-        raise UsageError("E138", f"{text!r} is not finite.", where=option)
+        raise UsageError("E138", f"{text!r} is not finite.", where=option, cure="Give numbers.")
     return int(found.group(1)), (x, y), (fx, fy)

@@ -400,6 +400,7 @@ def test_unknown_ones_are_refused_with_the_known_ones(name, installed):
         (f"{HERE}:Second", "cannot be loaded: AttributeError"),
         (f"{HERE}:NeedsMore", "cannot be loaded: TypeError"),
         (f"{HERE}:HERE", "cannot be loaded: TypeError"),
+        ("sys:exit", "cannot be loaded: SystemExit"),
         ("builtins:dict", "has no method `choose`"),
     ],
 )

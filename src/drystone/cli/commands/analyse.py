@@ -88,7 +88,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     )
     shaken = _wants_scatter(arguments)
     if shaken and not case.is_plain:
-        raise UsageError("E138", "the scatter is that of the tilting table; leave loads out.")
+        raise UsageError("E138", "the scatter is of the tilting table.", cure="Leave loads out.")
     path = Path(arguments.wall_path)
     given = read_wall(path, reading_from(arguments))
     wall = modelling.modelled(given, asked, arguments.wall_path)

@@ -51,7 +51,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
         return ExitCode.DONE
     for name, one in chosen.items():
         limits = "" if one["range"] is None else f"  ({one['range']})"
-        print(f"{name} = {json.dumps(one['value'])}{limits}")
+        print(f"{name} = {json.dumps(one['value'])}{limits.replace('`', '')}")
         meaning = one["meaning"].replace("`", "")
         print(textwrap.fill(meaning, 88, initial_indent="    ", subsequent_indent="    "))
     return ExitCode.DONE

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from drystone.errors import UsageError
+from drystone.errors import extra
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -71,14 +71,9 @@ def write_files(files: Files, folder: "Path") -> "tuple[Path, ...]":
     return tuple(folder / name for name in files)
 
 
-def load_extra(module: str, extra: str, code: str, where: str) -> Any:
+def load_extra(module: str, name: str, code: str, where: str) -> Any:
     """Return a module that not every installation has; UsageError says what to install."""
-    try:
-        return import_module(module)
-    except ImportError as error:
-        what = f"{module.partition('.')[0]} is not installed, and it writes this."
-        cure = f'Install it with `pip install "drystone[{extra}]"`, or choose another format.'
-        raise UsageError(code, what, where=where, cure=cure) from error
+    return extra(module, "writes this", where, name, code, ", or choose another format")
 
 
 _FORMATS = (

@@ -267,7 +267,7 @@ def _reach(text: str) -> float | None:
         reach = math.nan
     if not 0 < reach < math.inf:
         what = f"{text!r} is not a width in px, nor 'auto' or 'settle'."
-        raise UsageError("E138", what, where="--close-gaps")
+        raise UsageError("E138", what, where="--close-gaps", cure="Give one of them.")
     return reach
 
 

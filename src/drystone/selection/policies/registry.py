@@ -65,7 +65,7 @@ def policy_named(name: str, settings: PolicySettings, weights: SelectionSettings
         raise broken(name, f"is in several packages: {', '.join(sorted(e.value for e in found))}")
     try:
         policy = found[0].load()()
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         raise broken(name, f"cannot be loaded: {type(error).__name__}: {error}") from error
     if not callable(getattr(policy, "choose", None)):
         raise broken(name, f"is {policy!r}, which has no method `choose`")
