@@ -263,10 +263,11 @@ def test_an_end_beyond_0_needs_a_proof_of_the_fall_too(sign, alpha):
     honest = PROVED._replace(live=float(sign), rhs=alpha, inadmissible=1e-10)
     found = certified_bound(honest, sign * alpha, sign, "")
     assert found.alpha == sign * alpha
-    assert found.fall.holds
+    assert found.falls
+    assert found.certificate.holds
     closing = honest._replace(inadmissible=max(0.99e-8, -alpha) if alpha > -1e-8 else 1.0)
     assert certified_bound(closing, sign * alpha, sign, "") is None
-    assert certified_bound(honest._replace(rhs=0.5), 0.5 * sign, sign, "").fall is None
+    assert not certified_bound(honest._replace(rhs=0.5), 0.5 * sign, sign, "").falls
 
 
 def test_no_bound_without_a_certificate_and_no_fall_with_help_of_the_live_load():
@@ -276,7 +277,7 @@ def test_no_bound_without_a_certificate_and_no_fall_with_help_of_the_live_load()
         assert certified_bound(carries._replace(**{error: 2e-8}), 0.5, 1, "") is None
     assert certified_bound(carries._replace(rhs=0.5 + 1e-7), 0.5, 1, "") is None
     falling, nan = PROVED._replace(live=0.0), float("nan")
-    assert certified_bound(falling, nan, 1, "").fall.holds
+    assert certified_bound(falling, nan, 1, "").falls
     for error in ({"live": 0.1}, {"rhs": 0.5}, {"inadmissible": 1e-7}, {"largest": 0.0}):
         assert certified_bound(falling._replace(**error), nan, 1, "") is None
 
@@ -444,7 +445,7 @@ def test_guesses_are_proved_and_most_stones_have_one(labels):
                 if found is None:
                     continue
                 assert guess.sign == end.sign
-                if found.fall is not None:
+                if found.falls:
                     assert not expected.stable
                 elif expected.stable:
                     assert end.sign * found.alpha == pytest.approx(sought.alpha, abs=1e-9)

@@ -255,7 +255,7 @@ class LocalAnalysis(ConeAnalysis):
         program = self.program.appended(addition, added)
         near = [self._near(*ends, added) for ends in self._ends]
         bounds = [bound for _, bound in near]
-        known = all(b is not None and b.alpha == b.alpha and b.fall is None for b in bounds)
+        known = not any(bound is None or bound.falls for bound in bounds)
         if known and self.unsolved < UNSOLVED:
             result, after = _result_between(model, bounds), model.forgetting()
             greatest, least = (end for end, _ in near if end is not None)
@@ -309,7 +309,7 @@ class LocalAnalysis(ConeAnalysis):
             weaker = found.get(-end.sign)
             bound = None if weaker is None else self._carries(-weaker.alpha, end, opposite, added)
             bound = bound or self._near(end, opposite, added)[1]
-            if bound is None or bound.fall is not None:
+            if bound is None or bound.falls:
                 return None if bound is None else (bound,)
             found[end.sign] = bound
         return found[1], found[-1]
@@ -325,7 +325,7 @@ class LocalAnalysis(ConeAnalysis):
         found = figures(self.program.cones, self.program.weights, added, alpha, forces, rest)
         proof = Certificate(found.residual, found.violation, lower=alpha)
         carried = max(found.residual, found.violation) <= CERTIFIED
-        return Bound(alpha, proof, None, LOCAL) if carried else None
+        return Bound(alpha, proof, LOCAL) if carried else None
 
 
 class WarmBases(NamedTuple):
@@ -439,9 +439,13 @@ class Bound(NamedTuple):
     """One end of the range of alpha, certified."""
 
     alpha: float  # load multiplier; NaN when there is none at all
-    certificate: Certificate  # that it is the end, or that there is none
-    fall: Certificate | None  # that the blocks do not stand by themselves
+    certificate: Certificate  # that it is the end, or that the blocks fall by themselves
     solver: str
+
+    @property
+    def falls(self) -> bool:
+        """Whether it proves that the blocks do not stand."""
+        return self.certificate.fall_work is not None
 
 
 def _bound_of(
@@ -460,11 +464,10 @@ def certified_bound(found: Figures, alpha: float, sign: int, solver: str) -> Bou
     Beyond 0 they have to prove that the blocks fall by themselves: no forces do.  With an alpha
     that is NaN they have to prove that no alpha holds them up.
     """
-    if isnan(alpha) or sign * alpha < -TOLERANCE:
-        fall = certified_fall(found, found.live if isnan(alpha) else 0.0)
-        return Bound(alpha, fall, fall, solver) if fall.holds else None
     certificate = optimum_of(found, alpha, sign)
-    return Bound(alpha, certificate, None, solver) if certificate.holds else None
+    if isnan(alpha) or sign * alpha < -TOLERANCE:
+        certificate = certified_fall(found, found.live if isnan(alpha) else 0.0)
+    return Bound(alpha, certificate, solver) if certificate.holds else None
 
 
 def _result_between(model: RigidBlockModel, bounds: Iterable[Bound | None]) -> IncrementalResult:
@@ -478,13 +481,13 @@ def _result_between(model: RigidBlockModel, bounds: Iterable[Bound | None]) -> I
     for bound in bounds:
         if bound is None:
             return IncrementalResult(lateral_resistance(model), solved_cold=True)
-        if bound.fall is not None:
-            status, found = LimitStatus.UNSTABLE, [bound._replace(certificate=bound.fall)] * 2
+        if bound.falls:
+            status, found = LimitStatus.UNSTABLE, [bound, bound]
             break
         found.append(bound)
 
     def result(direction: Direction, bound: Bound, alpha: float) -> LimitResult:
-        one_sided = bound.fall is None and bound.certificate.upper is None
+        one_sided = not bound.falls and bound.certificate.upper is None
         return LimitResult(
             status,
             direction,
