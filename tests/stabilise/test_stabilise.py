@@ -1,5 +1,7 @@
 """Support, rotation first, wedging second (§3.7, Figs. 9 and 20, DESIGN 4.6), and remembering."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -14,6 +16,7 @@ from drystone.stabilise.settings import StabiliseSettings
 from drystone.stabilise.stabilise import (
     Support,
     WedgeStock,
+    falling_side,
     make_stable,
     rotate_to_rest,
     stabilise,
@@ -349,4 +352,6 @@ def test_a_stone_balanced_on_a_point_is_wedged_on_both_sides_with_ids_in_a_row()
 
 
 def test_where_a_support_is_too_short_for_both_margins_the_nearer_end_decides():
-    assert [Support(2, 6, 9, 9).falls(x, 3.0) for x in (1.9, 3.9, 4.1, 6.1)] == [-1, -1, 1, 1]
+    support, settings = Support(2, 6, 9, 9), StabiliseSettings(margin=0.1)
+    wide = (SimpleNamespace(anchor=(x, 3.0), width_px=30) for x in (0.9, 2.9, 3.1, 5.1))
+    assert [falling_side(support, (one, 0, 1), settings) for one in wide] == [-1, -1, 1, 1]

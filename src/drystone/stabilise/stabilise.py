@@ -26,17 +26,6 @@ class Support:
     left_row: int
     right_row: int
 
-    def falls(self, x_c: float, margin_px: float = 0.0) -> int:
-        """Say to which side the stone falls: -1 left, +1 right, 0 when it is stable.
-
-        Stable: the centre of mass projects inside AB, at least `margin_px` (0 in the paper) from
-        both ends; of a support too short for both margins the nearer end decides.
-        """
-        from_left, from_right = x_c - self.left_x, self.right_x - x_c
-        if min(from_left, from_right) >= margin_px:
-            return 0
-        return -1 if from_left < from_right else 1
-
 
 def support_polyline(occupied: Mask, posed: PosedStone, row: int, col: int) -> Support | None:
     """Return the support polyline of a stone at a position; None when nothing supports it.
@@ -50,9 +39,17 @@ def support_polyline(occupied: Mask, posed: PosedStone, row: int, col: int) -> S
 
 
 def falling_side(support: Support, pose: Pose, settings: StabiliseSettings) -> int:
-    """Say to which side a stone on its support falls: -1 left, +1 right, 0 when it is stable."""
+    """Say to which side a stone on its support falls: -1 left, +1 right, 0 when it is stable.
+
+    Stable: the centre of mass projects inside AB, at least by the margin (0 in the paper) from
+    both ends; of a support too short for both margins the nearer end decides.
+    """
     posed, _, col = pose
-    return support.falls(col + posed.anchor[0], settings.margin * posed.width_px)
+    x_c = col + posed.anchor[0]
+    from_left, from_right = x_c - support.left_x, support.right_x - x_c
+    if min(from_left, from_right) >= settings.margin * posed.width_px:
+        return 0
+    return -1 if from_left < from_right else 1
 
 
 @dataclass(frozen=True, eq=False)
@@ -217,18 +214,16 @@ def _wedges_under(
 
     The second is for a support too narrow for both margins.
     """
-    first = wedge_under(occupied, trial, stock.next_id, stock.mean_height_px, settings)
-    if first is None:
-        return None
-    scene = occupied.copy()
-    scene[first.window] |= first.mask
-    if falls_to(scene, trial, settings) == 0:
-        return (first,)
-    second = wedge_under(scene, trial, stock.next_id + 1, stock.mean_height_px, settings)
-    if second is None:
-        return None
-    scene[second.window] |= second.mask
-    return (first, second) if falls_to(scene, trial, settings) == 0 else None
+    scene, cut = occupied.copy(), list[Wedge]()
+    for number in (stock.next_id, stock.next_id + 1):
+        wedge = wedge_under(scene, trial, number, stock.mean_height_px, settings)
+        if wedge is None:
+            return None
+        cut.append(wedge)
+        scene[wedge.window] |= wedge.mask
+        if falls_to(scene, trial, settings) == 0:
+            return tuple(cut)
+    return None
 
 
 def wedge_sizes_px(mean_height_px: float, settings: StabiliseSettings) -> tuple[int, int]:
@@ -249,9 +244,8 @@ def wedge_under(
     and what is below all along.
     """
     posed, row, col = pose
-    support = support_polyline(occupied, posed, row, col)
-    side = 0 if support is None else falling_side(support, pose, settings)
-    if side == 0:
+    side = falls_to(occupied, pose, settings)
+    if not side:
         return None
     sizes = wedge_sizes_px(mean_height_px, settings)
     # The columns whose support would bring the centre of mass inside, first and end.
