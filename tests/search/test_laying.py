@@ -379,7 +379,7 @@ def test_a_stone_is_wedged_at_the_cheapest_place_first():
     starts = drop.starts(None, 25.0)
     one_by_one = [wedged(drop.stone, scene, at, hand.settle, hand.limits) for at in starts]
     expected = {
-        (round(one.repose.settled.x_px), round(one.repose.settled.y_px)): one.wedge.tobytes()
+        (round(one[0].settled.x_px), round(one[0].settled.y_px)): one[1].tobytes()
         for one in reversed(one_by_one)
         if one is not None
     }

@@ -188,7 +188,7 @@ def test_all_ways_are_tried_but_for_those_that_lead_nowhere(method):
         found = [let_go(stone, scene, start, rules) for rules in ways(stone, scene, settings)]
         good = [one.status == Status.RESTS and one.margin >= settings.margin for one in found]
         expected = [one for one, rest in zip(found, good, strict=True) if rest]
-        assert list(rests(stone, scene, start, settings)) == expected
+        assert list(rests(stone, scene, start, settings, turns=True)) == expected
         first = come_to_rest(stone, scene, start, settings)
         assert (first is None) == (not expected)
         if first is not None:

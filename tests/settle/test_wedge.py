@@ -20,7 +20,6 @@ from drystone.kernels.settling import rest_margin
 from drystone.settle.rest import SettlingScene, Turned
 from drystone.settle.settings import SettleSettings
 from drystone.settle.wedge import (
-    PLACES,
     CreviceSlabs,
     WedgeLimits,
     _near,
@@ -253,7 +252,7 @@ def test_each_part_of_a_crevice_has_its_places_and_itself():
     """The stone is no obstacle to its own wedges."""
     limits = WedgeLimits(least_thickness=0.6, greatest_height=2.5)
     under = no_polygons().added([moved(POST, 2.0)])
-    found = all_spans(CreviceSlabs.of(crevice(PLANK, under, limits.clearance_px)), PLACES, limits)
+    found = all_spans(CreviceSlabs.of(crevice(PLANK, under, limits.clearance_px)), limits)
     left = [span for span in found if span[1] < 13.0]
     right = [span for span in found if span[0] > 16.0]
     assert found == left + right
@@ -305,11 +304,11 @@ def lowered(side, start=(15.0, 6.0), limits=FIRM, others=(POST,)):
 
 @pytest.mark.parametrize("side", ["left", "right"])
 def test_the_free_side_gets_a_wedge_that_holds_the_stone(side):
-    found = lowered(side)
-    settled, wedge = found.repose.settled, found.wedge
+    repose, wedge = lowered(side)
+    settled = repose.settled
     assert area_and_centroid(wedge)[0] > 0.0
     assert (wedge * GRID == np.round(wedge * GRID)).all()
-    assert (found.repose.angle_deg, found.repose.turned) == (0.0, False)
+    assert (repose.angle_deg, repose.turned) == (0.0, False)
     corners, x = settled.corners, settled.x_px
     if side == "right":
         corners, wedge = (mirrored_polygon(one, WIDTH) for one in (corners, wedge))

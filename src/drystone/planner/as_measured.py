@@ -24,7 +24,15 @@ from drystone.planner.settings import PlannerSettings
 from drystone.planner.workshop import Workshop
 from drystone.poses import wrap_deg
 from drystone.settle.placing import settled_in
-from drystone.settle.rest import Repose, SettlingScene, Turned, come_to_rest, lay, placed_outline
+from drystone.settle.rest import (
+    Repose,
+    SettlingScene,
+    Start,
+    Turned,
+    come_to_rest,
+    lay,
+    placed_outline,
+)
 from drystone.settle.wedge import wedged
 from drystone.stabilise.stabilise import WedgeStock, stabilise
 
@@ -58,9 +66,6 @@ ROOM = 3
 SAME_ANGLE_DEG = 2.0
 """Stones that are pixels may have the planned angle instead of one that is so near."""
 
-
-Start = tuple[float, float]
-"""Where a stone is let go, in the view."""
 
 Rested = tuple[Repose, Points | None]
 """Where a stone rests, and the wedge that holds it there."""
@@ -228,7 +233,7 @@ def _on_outlines(
 
     def held(starts: Iterable[Start]) -> list[Rested]:
         found = (wedged(turned, scene, start, settle, limits) for start in starts)
-        return [(one.repose, one.wedge) for one in found if one is not None]
+        return [one for one in found if one is not None]
 
     def alone(way: Callable[..., Repose | None], starts: Iterable[Start]) -> list[Rested]:
         found = (way(turned, scene, start, settle) for start in starts)

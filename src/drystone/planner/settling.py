@@ -162,7 +162,7 @@ class ExactProposer(Proposer):
             elif method in ("both", "wedge"):  # rotation first, wedging second (§3.7)
                 found = wedged(hung.turned, scene, start, settings, self._limits)
                 if found is not None:
-                    stabilised = self._stabilised(drop, found.repose, found.wedge)
+                    stabilised = self._stabilised(drop, *found)
         if stabilised is None:
             return None
         cost = self._cost(drop.trial, stabilised)

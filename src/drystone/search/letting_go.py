@@ -1,7 +1,7 @@
 """Letting a planned stone go near its place: from where, and where it comes to rest."""
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,12 +12,10 @@ from drystone.kernels.profiles import Floats, StoneProfile, hanging
 from drystone.planner.search_settings import LayingSettings
 from drystone.planner.views import SideView
 from drystone.poses import wrap_deg
-from drystone.settle.rest import Repose, Turned, repose, rests, touch_down
+from drystone.settle.rest import Repose, Start, Turned, repose, rests, touch_down
 from drystone.settle.settings import SettleSettings
-from drystone.settle.wedge import WedgeLimits, held
+from drystone.settle.wedge import WedgeLimits, wedge_for
 from drystone.stabilise.settings import Method
-
-Place = tuple[float, float]
 
 CLOSED_UP = 0.25
 """A stone may come to rest nearer to its end of the wall than planned, by so many mean heights."""
@@ -55,11 +53,8 @@ class Hand:
     limits: WedgeLimits
     method: Method  # what is tried with a stone that does not rest
 
-    def starts(self, stone: Turned, view: SideView, aim: Aim) -> list[Place]:
-        """Return from where a stone is let go: where it first touches, the cheapest place first.
-
-        Places are those of its centroid, in the view.
-        """
+    def starts(self, stone: Turned, view: SideView, aim: Aim) -> list[Start]:
+        """Return from where a stone is let go: where it first touches, the cheapest place first."""
         settings, column_px = self.settings, view.column_px
         profile = hanging(stone.corners, column_px)
         first, last = self._columns(profile, stone.size_px, view, aim)
@@ -73,7 +68,7 @@ class Hand:
         cost[lift + profile.top > aim.top_px + settings.astray * aim.unit_px] = np.inf
         least = settings.apart if aim.left_px is not None else settings.spread
         apart = max(1, math.ceil(least * stone.size_px / column_px))
-        found: list[Place] = []
+        found: list[Start] = []
         while len(found) < settings.starts:
             at = int(cost.argmin())
             if cost[at] == np.inf:
@@ -105,7 +100,7 @@ class Hand:
         return np.asarray(cost / aim.unit_px)
 
     def resting(
-        self, stone: Turned, view: SideView, aim: Aim, starts: Sequence[Place]
+        self, stone: Turned, view: SideView, aim: Aim, starts: Sequence[Start]
     ) -> list[Resting]:
         """Let a stone go, and return where it rests near its place, the cheapest first.
 
@@ -124,7 +119,11 @@ class Hand:
             return found
         lowered = (touch_down(stone, view.scene, start, self.settle) for start in starts)
         there = ([] if one is None else [one] for one in lowered)
-        return list(self._wedged(self._cheapest(there, math.inf, view, aim), view))
+        return [
+            Resting(place.repose, wedge, place.cost + self.settings.wedge)
+            for place in self._cheapest(there, math.inf, view, aim)
+            if (wedge := wedge_for(place.repose, view.scene, self.limits)) is not None
+        ]
 
     def _cheapest(
         self, found: Iterable[list[Repose]], enough: float, view: SideView, aim: Aim
@@ -145,13 +144,6 @@ class Hand:
                 break
         # Costs that differ by rounding are equal; then the earlier start goes first.
         return sorted(near.values(), key=lambda one: round(one.cost, 9))
-
-    def _wedged(self, places: Iterable[Resting], view: SideView) -> Iterator[Resting]:
-        """Wedge a stone where it was lowered, and list where that holds it."""
-        for place in places:
-            found = held(place.repose, view.scene, self.limits)
-            if found is not None:
-                yield Resting(found.repose, found.wedge, place.cost + self.settings.wedge)
 
     def _cost(self, found: Repose, view: SideView, aim: Aim) -> float:
         """Return what it costs to rest somewhere; infinite where it is far from the plan."""

@@ -34,6 +34,9 @@ OVERLAP_PX = 0.5
 CLEAR_PX = 1.0
 """A stone that is no farther from the end of the wall, source px, has no neighbour there."""
 
+Start = tuple[float, float]
+"""Where the centroid of a stone is let go, in the view."""
+
 LIFT, LEVEL, OPEN = 0.02, 0.06, 0.3
 """To open a joint a stone is let go so much higher, over its size; it may rest higher than before
 by so much at most, and so much of the joint stays open at least."""
@@ -90,24 +93,19 @@ class Repose:
 def come_to_rest(
     stone: Turned,
     scene: SettlingScene,
-    start: tuple[float, float],
+    start: Start,
     settings: SettleSettings,
     *,
     turns: bool = True,
 ) -> Repose | None:
-    """Let a stone go with its centroid at a start of the view; None where it does not rest."""
+    """Let a stone go; None where it does not rest."""
     for found in rests(stone, scene, start, settings, turns=turns):
         return repose(stone, scene, found)
     return None
 
 
 def rests(
-    stone: Turned,
-    scene: SettlingScene,
-    start: tuple[float, float],
-    settings: SettleSettings,
-    *,
-    turns: bool = True,
+    stone: Turned, scene: SettlingScene, start: Start, settings: SettleSettings, *, turns: bool
 ) -> Iterator[Settling]:
     """List where a stone rests that is let go in all ways (:func:`ways`), in their order.
 
@@ -129,12 +127,7 @@ def rests(
 
 
 def _touching(
-    stone: Turned,
-    scene: SettlingScene,
-    start: tuple[float, float],
-    settings: SettleSettings,
-    *,
-    turns: bool,
+    stone: Turned, scene: SettlingScene, start: Start, settings: SettleSettings, *, turns: bool
 ) -> Iterator[Settling]:
     *earlier, last = ways(stone, scene, settings, turns=turns)
     stopped = None
@@ -158,7 +151,7 @@ def _rests(found: Settling, settings: SettleSettings) -> bool:
 
 
 def touch_down(
-    stone: Turned, scene: SettlingScene, start: tuple[float, float], settings: SettleSettings
+    stone: Turned, scene: SettlingScene, start: Start, settings: SettleSettings
 ) -> Repose | None:
     """Lower a stone without turning it until nothing is gained; None when it slides away.
 
@@ -172,7 +165,7 @@ def touch_down(
 
 
 def lay(
-    stone: Turned, scene: SettlingScene, start: tuple[float, float], settings: SettleSettings
+    stone: Turned, scene: SettlingScene, start: Start, settings: SettleSettings
 ) -> Repose | None:
     """Lay a stone where it is planned, and move it no further than until it rests.
 
@@ -183,9 +176,7 @@ def lay(
     return repose(stone, scene, found) if found.status == Status.RESTS else None
 
 
-def let_go(
-    stone: Turned, scene: SettlingScene, start: tuple[float, float], rules: SettlingRules
-) -> Settling:
+def let_go(stone: Turned, scene: SettlingScene, start: Start, rules: SettlingRules) -> Settling:
     """Settle a stone in one way; one that may not turn has not turned, not even by rounding."""
     found = settle(stone.corners, stone.edges, (*start, 0.0), scene.polygons, scene.width_px, rules)
     return found if rules.turns else found._replace(angle=0.0)

@@ -15,7 +15,7 @@ from drystone.kernels.crevice import SAME, Crevice, between, crevice, slabs
 from drystone.kernels.polygons import Points, Polygons, area_and_centroid, mirrored_polygon, on_grid
 from drystone.kernels.settling import rest_margin
 from drystone.model.wedge_shape import ROUNDING, WedgeRule, WedgeShape, open_sides
-from drystone.settle.rest import Repose, SettlingScene, Turned, touch_down
+from drystone.settle.rest import Repose, SettlingScene, Start, Turned, touch_down
 from drystone.settle.settings import SettleSettings
 
 Span = tuple[float, float]
@@ -91,11 +91,13 @@ def wedge_under(
     falls = falling_side(stone, centroid[0], around, limits)
     if falls == 0:
         return None
-    near = _near(stone, around, limits)
+    near, mu, steep = _near(stone, around, limits), limits.mu, limits.steep
     for wedge in _wedges(stone, centroid[0], near, falls, limits):
-        if _holds(wedge, (stone, centroid), near, width, limits) and not squeezed_out(
-            wedge, stone, around, width, limits
-        ):
+        if not rests(wedge, near, width, limits):
+            continue
+        on_it = near.added([wedge])
+        margin = rest_margin(stone, centroid, on_it, width, mu, limits.contact_px, steep=steep)
+        if margin >= limits.rest and not squeezed_out(wedge, stone, around, width, limits):
             return wedge
     return None
 
@@ -107,7 +109,7 @@ def wedges_below(polygons: Polygons, stone: int, limits: WedgeLimits) -> Iterato
     """
     corners = polygons.polygon(stone)
     space = crevice(corners, _near(corners, polygons, limits, stone), limits.clearance_px)
-    for span in all_spans(CreviceSlabs.of(space), PLACES, limits):
+    for span in all_spans(CreviceSlabs.of(space), limits):
         wedge = between(space, *span)
         if wedge is not None:
             yield gridded(wedge)
@@ -161,21 +163,6 @@ def falling_side(stone: Points, x_c: float, around: Polygons, limits: WedgeLimit
     return -1 if from_left < from_right else 1
 
 
-def _holds(
-    wedge: Points,
-    stone: tuple[Points, tuple[float, float]],
-    around: Polygons,
-    width: float,
-    limits: WedgeLimits,
-) -> bool:
-    """Say whether a wedge rests on what is below it alone, and the stone rests with it."""
-    if not rests(wedge, around, width, limits):
-        return False
-    on_it = around.added([wedge])
-    mu, contact_px, steep = limits.mu, limits.contact_px, limits.steep
-    return rest_margin(*stone, on_it, width, mu, contact_px, steep=steep) >= limits.rest
-
-
 def _wedges(
     stone: Points, x_c: float, around: Polygons, falls: int, limits: WedgeLimits
 ) -> Iterator[Points]:
@@ -201,7 +188,7 @@ def _spans(space: Crevice, x_c: float, limits: WedgeLimits) -> Iterator[Span]:
             continue
         first = min(max(part[0], least), last)
         for left in np.linspace(first, last, PLACES if first < last else 1).tolist():
-            span = fitted(table, (left, min(left + limits.least_width, part[1])), part, limits)
+            span = fitted(table, left, part, limits)
             if span is not None:
                 yield span
 
@@ -241,29 +228,30 @@ def in_order(polygons: Polygons, chosen: list[int]) -> Polygons:
     )
 
 
-def all_spans(table: CreviceSlabs, places: int, limits: WedgeLimits) -> list[Span]:
+def all_spans(table: CreviceSlabs, limits: WedgeLimits) -> list[Span]:
     """List where wedges may be anywhere in a crevice, from left to right.
 
-    At so many places, from one end to the other of each part of it: as wide as high there; and
-    over the whole part.
+    At :data:`PLACES` from one end to the other of each part of it: as wide as high there; and over
+    the whole part.
     """
     found: list[Span] = []
     for part in parts(table, limits):
         last = part[1] - limits.least_width
         if last < part[0]:
             continue
-        spans = [
-            fitted(table, (left, min(left + limits.least_width, part[1])), part, limits)
-            for left in np.linspace(part[0], last, places).tolist()
-        ]
+        places = np.linspace(part[0], last, PLACES).tolist()
+        spans = [fitted(table, left, part, limits) for left in places]
         spans.append(part if limits.allows(table.shape(part), SAME) else None)
         found += [span for span in dict.fromkeys(spans) if span is not None]
     return found
 
 
-def fitted(table: CreviceSlabs, narrowest: Span, part: Span, limits: WedgeLimits) -> Span | None:
-    """Make a span as wide as it is high: outwards, then inwards; None when that is no wedge."""
-    left, right = narrowest
+def fitted(table: CreviceSlabs, left: float, part: Span, limits: WedgeLimits) -> Span | None:
+    """Make the narrowest span from a place on as wide as it is high: outwards, then inwards.
+
+    None when that is no wedge.
+    """
+    right = min(left + limits.least_width, part[1])
     for _ in range(WIDENINGS):
         height = table.shape((left, right)).height
         if height <= right - left:
@@ -310,31 +298,27 @@ def extent(points: Points) -> Span:
     return float(points[:, 0].min()), float(points[:, 0].max())
 
 
-@dataclass(frozen=True, eq=False)
-class Wedged:
-    """A stone on a wedge."""
-
-    repose: Repose
-    wedge: Points  # (n, 2): corners of the wedge in the wall frame, counter-clockwise, source px
-
-
 def wedged(
     stone: Turned,
     scene: SettlingScene,
-    start: tuple[float, float],
+    start: Start,
     settings: SettleSettings,
     limits: WedgeLimits,
-) -> Wedged | None:
-    """Lower a stone from a start of the view without turning it, and wedge it there.
+) -> tuple[Repose, Points] | None:
+    """Lower a stone without turning it, and wedge it there: where it rests, and its wedge.
 
     None when no wedge holds it.
     """
     repose = touch_down(stone, scene, start, settings)
-    return None if repose is None else held(repose, scene, limits)
+    wedge = None if repose is None else wedge_for(repose, scene, limits)
+    return None if repose is None or wedge is None else (repose, wedge)
 
 
-def held(repose: Repose, scene: SettlingScene, limits: WedgeLimits) -> Wedged | None:
-    """Wedge a stone where `touch_down` lowered it; None when no wedge holds it."""
+def wedge_for(repose: Repose, scene: SettlingScene, limits: WedgeLimits) -> Points | None:
+    """Cut the wedge that holds a stone where `touch_down` lowered it; None when none does.
+
+    It is in the wall frame, (n, 2), counter-clockwise.
+    """
     x, corners = repose.settled.x_px, repose.settled.corners
     if scene.side == "right":
         x, corners = scene.width_px - x, mirrored_polygon(corners, scene.width_px)
@@ -344,4 +328,4 @@ def held(repose: Repose, scene: SettlingScene, limits: WedgeLimits) -> Wedged | 
         return None
     if scene.side == "right":
         wedge = mirrored_polygon(wedge, scene.width_px)
-    return Wedged(repose, gridded(wedge))
+    return gridded(wedge)
