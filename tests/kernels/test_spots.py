@@ -16,6 +16,7 @@ from drystone.kernels.lowering import skyline
 from drystone.kernels.rays import RaySums
 from drystone.kernels.silhouette import silhouette
 from drystone.kernels.spots import (
+    Eq12,
     SnugWeights,
     best,
     best_by_eq12,
@@ -93,13 +94,13 @@ def test_the_best_by_a_rule_are_those_of_the_merits_of_all(
 ):
     """Most places are passed over."""
     at, outline, rays = scene.positions, scene.outline, scene.rays
-    eq12 = (scene.built, anchor / 64, beta)
-    merits = eq12_merits(at, outline, rays, *eq12)
+    eq12 = Eq12(scene.built, anchor / 64, beta)
+    merits = eq12_merits(at, outline, rays, eq12)
     costs = SnugWeights(*weights)
     snug = best(snug_merits(at, outline, scene.top, rays, costs), at, tries)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(spots, "GUESSES", guesses)
-        assert best_by_eq12(at, outline, rays, *eq12, tries) == best(merits, at, tries)
+        assert best_by_eq12(at, outline, rays, eq12, tries) == best(merits, at, tries)
         assert best_by_snugness(at, outline, scene.top, rays, costs, tries) == snug
     lowest = best(rays.filled_share(outline, at), at, tries, lowest_first=True)
     assert best_by_height(at, outline, rays, tries) == lowest
@@ -111,7 +112,8 @@ def test_a_place_further_on_is_not_passed_over_when_its_rays_are_all_filled():
     # Voids under the upper step, in whose corner is the most promising place.
     occupied[10:19, :40] = np.arange(40) % 10 == 5
     scene = scene_of(occupied, np.ones((5, 10), bool))
-    (place,) = best_by_eq12(scene.positions, scene.outline, scene.rays, scene.built, 5.0, 0.7, 1)
+    eq12 = Eq12(scene.built, 5.0, 0.7)
+    (place,) = best_by_eq12(scene.positions, scene.outline, scene.rays, eq12, 1)
     assert (place.row, place.col) == (5, 50)
     assert place.merit == round((1 + 1 - 0.55) * 1e12)
 

@@ -176,14 +176,6 @@ def check(poses: Poses, plan: Arrangement, ground: Ground, rules: Rules) -> None
         raise ValueError("weights and lengths must not be negative")
 
 
-def path_starts(side: int) -> list[int]:
-    """Return where paths across a side start, from its first end."""
-    room: list = []
-    starts: cython.p_int = kept_ints(room, STARTS)
-    count: cython.int = fill_starts(side, starts)
-    return [starts[i] for i in range(count)]
-
-
 def ways_up(joints: Joints, below: Joints, ways: Ints, width: int) -> Ints:
     """Return how far paths from the bottom to the joints of a course go aside, (joints, STARTS).
 

@@ -27,6 +27,14 @@ class Place(NamedTuple):
     col: int
 
 
+class Eq12(NamedTuple):
+    """What Eq. 12 depends on beside the position."""
+
+    built_height: int  # of the box B of Eq. 5, as high as what is built
+    anchor_x: float  # of the stone's centroid, from the left edge of its mask
+    beta: float
+
+
 class SnugWeights(NamedTuple):
     """Weights of the costs of :func:`snug_merits`."""
 
@@ -46,36 +54,20 @@ def threshold(x: Floats, beta: float) -> Floats:
     return np.where(x > beta, x, 0.0)
 
 
-def eq12_merits(
-    positions: Positions,
-    mask: Silhouette,
-    rays: RaySums,
-    built_height: int,
-    anchor_x: float,
-    beta: float,
-) -> Floats:
-    """Return LFR + H(GDS, beta) - x_c / w for every position (Eq. 12a).
-
-    The box B of Eq. 5 is as high as what is built; `anchor_x` is that of the stone's centroid from
-    the left edge of its mask.
-    """
-    dice, end = _terms(positions, mask, rays, built_height, anchor_x, beta)
+def eq12_merits(positions: Positions, mask: Silhouette, rays: RaySums, eq12: Eq12) -> Floats:
+    """Return LFR + H(GDS, beta) - x_c / w for every position (Eq. 12a)."""
+    dice, end = _terms(positions, mask, rays, eq12)
     return np.asarray(rays.filled_share(mask, positions) + dice - end)
 
 
 def _terms(
-    positions: Positions,
-    mask: Silhouette,
-    rays: RaySums,
-    built_height: int,
-    anchor_x: float,
-    beta: float,
+    positions: Positions, mask: Silhouette, rays: RaySums, eq12: Eq12
 ) -> tuple[Floats, Floats]:
     """Return H(GDS, beta) and x_c / w, for which no ray is counted."""
-    from_row = np.clip(rays.height - built_height - positions[:, 0], 0, mask.height)
-    box_area = float(rays.width * built_height)
+    from_row = np.clip(rays.height - eq12.built_height - positions[:, 0], 0, mask.height)
+    box_area = float(rays.width * eq12.built_height)
     dice = dice_score(mask.area_from[from_row], int(mask.area_from[0]), box_area)
-    return threshold(dice, beta), (positions[:, 1] + anchor_x) / rays.width
+    return threshold(dice, eq12.beta), (positions[:, 1] + eq12.anchor_x) / rays.width
 
 
 def snug_merits(
@@ -103,13 +95,7 @@ def snug_merits(
 
 
 def best_by_eq12(
-    positions: Positions,
-    mask: Silhouette,
-    rays: RaySums,
-    built_height: int,
-    anchor_x: float,
-    beta: float,
-    tries: int,
+    positions: Positions, mask: Silhouette, rays: RaySums, eq12: Eq12, tries: int
 ) -> list[Place]:
     """Return the positions of the largest merits (Eq. 12a), the best first, so many at most.
 
@@ -117,7 +103,7 @@ def best_by_eq12(
 
     Of equal ones the lower comes first, then the one further to the left.
     """
-    dice, end = _terms(positions, mask, rays, built_height, anchor_x, beta)
+    dice, end = _terms(positions, mask, rays, eq12)
     return _best_of_most(
         1.0 + dice - end,
         lambda some: rays.filled_share(mask, positions[some]) + dice[some] - end[some],

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from drystone.kernels.lowering import Positions
 from drystone.kernels.spots import (
+    Eq12,
     Place,
     SnugWeights,
     best_by_eq12,
@@ -57,8 +58,8 @@ def _best(
     stone, rays, tries = posed.silhouette, landscape.rays, settings.tries
     if settings.rule == "eq12":
         # The paper's own: the largest LFR + H(GDS, beta) - x_c / w (Eq. 12a, Eq. 13).
-        built = landscape.built_height_px
-        return best_by_eq12(positions, stone, rays, built, posed.anchor[0], settings.beta, tries)
+        eq12 = Eq12(landscape.built_height_px, posed.anchor[0], settings.beta)
+        return best_by_eq12(positions, stone, rays, eq12, tries)
     if settings.rule == "lowest":
         # That of the paper's released code; of equal heights the largest LFR.
         return best_by_height(positions, stone, rays, tries)

@@ -86,13 +86,13 @@ class Evaluator:
             )
         judged = Candidate(
             proposal, indices, course_height, loaded.model, resistance,
-            solves=_trouble(loaded.grown),
+            solves=trouble(loaded),
         )  # fmt: skip
         if sturdy is None:
             return judged
         with self.profile.part("limit analysis"):
             stands = sturdy.grown.resistance.stable and not falls_when_let_go(loaded.model)
-        solves = _trouble(loaded.grown, sturdy.grown)
+        solves = trouble(loaded, sturdy)
         return replace(judged, sturdy_model=sturdy.model, sturdy=stands, solves=solves)
 
     def loaded(self, build: Build, blocks: list[Outlined]) -> Loaded:
@@ -131,8 +131,10 @@ class Evaluator:
         return replace(judged, proposal=proposal, indices=indices, course_height_px=course_height)
 
 
-def _trouble(*models: IncrementalResult) -> Solves:
-    failed, cold = (m.resistance.failed for m in models), (m.solved_cold for m in models)
+def trouble(*models: Loaded) -> Solves:
+    """Count the trouble with a place, once in all of its models."""
+    grown = [one.grown for one in models]
+    failed, cold = (one.resistance.failed for one in grown), (one.solved_cold for one in grown)
     return Solves(int(any(failed)), int(any(cold)))
 
 

@@ -6,15 +6,17 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy import ndimage
 
 from drystone.errors import InputError
-from drystone.kernels.coverage import coverage
+from drystone.kernels.coverage import coverage, windows
 from drystone.kernels.polygons import Points
 from drystone.kernels.raster import Mask, turn
 from drystone.model.site import Site, working_px
 from drystone.model.stone import Stone, StoneSet
 from drystone.model.wall import Labels, Wall
 from drystone.poses import wrap_deg
+from drystone.settle.rest import placed_outline
 
 SEEN = (0.6, 1.5)
 """A stone of which less than this share is in the picture, or more, is not measured by it."""
@@ -131,9 +133,7 @@ def places_in(
         )
         planned_px = np.asarray(expected == stone_id)
         # How many pixels differ, over how many are at the rim of what was planned.
-        padded = np.pad(planned_px, 1)
-        inner = padded[:-2, 1:-1] & padded[2:, 1:-1] & padded[1:-1, :-2] & padded[1:-1, 2:]
-        rim = int((planned_px & ~inner).sum())
+        rim = int((planned_px & ~ndimage.binary_erosion(planned_px)).sum())
         if int((seen ^ planned_px).sum()) / max(rim, 1) <= SAME:
             found[stone_id] = there
         else:
@@ -171,7 +171,11 @@ def fitted(seen: Mask, outline: Points, scale: float, planned_deg: float | None)
     reach = float(np.hypot(*shape.T).max())
 
     def misfit(pose: Fit) -> float:
-        return _misfit(seen, len(rows), shape, pose)
+        """Return the sum of squares of what is covered of each pixel, less what is seen."""
+        shares, left, bottom = coverage(turn(shape, pose[2]) + pose[:2])
+        inside, part = windows(seen.shape, shares.shape, len(seen) - bottom - len(shares), left)
+        both = float(shares[part][seen[inside]].sum())
+        return len(rows) + float((shares * shares).sum()) - 2.0 * both
 
     angles = np.arange(0.0, 360.0, COARSE_DEG).tolist()
     coarse = min(angles, key=lambda angle: misfit((x, y, angle)))
@@ -205,21 +209,6 @@ def _refined(misfit: Callable[[Fit], float], pose: Fit, reach: float) -> tuple[f
     return least, pose
 
 
-def _misfit(seen: Mask, count: int, shape: Points, pose: Fit) -> float:
-    """Return the sum of squares of what an outline covers of each pixel, less what is seen."""
-    corners = turn(shape, pose[2])
-    corners[:, 0] += pose[0]
-    corners[:, 1] += pose[1]
-    shares, left, bottom = coverage(corners)
-    height, width = shares.shape
-    top = len(seen) - bottom - height
-    rows = slice(max(top, 0), max(min(top + height, len(seen)), 0))
-    cols = slice(max(left, 0), max(min(left + width, seen.shape[1]), 0))
-    there = shares[rows.start - top : rows.stop - top, cols.start - left : cols.stop - left]
-    both = float(there[seen[rows, cols]].sum())
-    return count + float((shares * shares).sum()) - 2.0 * both
-
-
 def _scale_of(labels: NDArray[np.integer], site: Site) -> float:
     """Return the resolution of a picture of the wall over that of the source (E196)."""
     width, height = site.extent_px
@@ -249,13 +238,12 @@ def _expected(wall: Wall, scale: float) -> Labels:
     labels = np.zeros((working_px(height, scale), working_px(width, scale)), np.uint32)
     for placement in wall.placements:
         x, y = placement.centroid(site.height_px)
-        corners = turn(placement.posed.stone.outline, placement.posed.angle_deg)
-        corners += np.array([x, y]) / site.scale
+        at = placement.posed.angle_deg, x / site.scale, y / site.scale
+        corners = placed_outline(placement.posed.stone.outline, *at)
         shares, left, bottom = coverage(corners * scale)
-        rows, cols = np.nonzero(shares >= 0.5)
-        rows, cols = rows + len(labels) - bottom - len(shares), cols + left
-        inside = (rows >= 0) & (rows < len(labels)) & (cols >= 0) & (cols < labels.shape[1])
-        labels[rows[inside], cols[inside]] = placement.stone_id
+        top = len(labels) - bottom - len(shares)
+        inside, part = windows(labels.shape, shares.shape, top, left)
+        labels[inside][shares[part] >= 0.5] = placement.stone_id
     return labels
 
 

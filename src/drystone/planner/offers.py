@@ -27,17 +27,14 @@ def offer(candidate: Candidate, site: Site, wedge_ids: frozenset[int] = frozense
     wedge_ids |= {wedge.id for wedge in candidate.stabilised.wedges}
     placement = candidate.stabilised.placement
     settled, posed = placement.settled, placement.posed
-    left, bottom, right, top = (
-        float(placement.col),
-        float(site.height_px - placement.row - posed.height_px),
-        float(placement.col + posed.width_px),
-        float(site.height_px - placement.row),
-    )
-    if settled is not None:
-        low, high = settled.corners.min(axis=0), settled.corners.max(axis=0)
-        left, bottom, right, top = (site.scale * float(v) for v in (*low, *high))
-    # The model of outlines is in source px.
+    # What is settled, its model too, is in source px.
     scale = 1.0 if settled is None else site.scale
+    if settled is None:
+        (rows, cols), height = placement.window, site.height_px
+        box = cols.start, height - rows.stop, cols.stop, height - rows.start
+    else:
+        box = *settled.corners.min(axis=0), *settled.corners.max(axis=0)
+    left, bottom, right, top = (scale * float(end) for end in box)
     block = next(b for b in reversed(candidate.model.blocks) if b.id == candidate.stone_id)
     new = candidate.model.added or candidate.model
     pairs = [{i.block, i.other} for i in new.interfaces]

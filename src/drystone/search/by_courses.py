@@ -1,6 +1,5 @@
 """Walls that are planned course by course, then laid."""
 
-import math
 from dataclasses import replace
 from itertools import pairwise
 
@@ -8,6 +7,7 @@ from numpy.random import Generator
 
 from drystone.planner.build import Build
 from drystone.planner.search_settings import LayingSettings
+from drystone.planner.vary import multiplied
 from drystone.search.course_task import task_of
 from drystone.search.courses import CoursePlan, plan_courses
 from drystone.search.goal import Courses, FoundWall
@@ -45,10 +45,9 @@ def replanned(found: FoundWall, yard: Yard, rng: Generator) -> FoundWall | None:
 def relaid(found: FoundWall, yard: Yard, rng: Generator) -> FoundWall:
     """Lay the upper courses of a wall again, with every weight multiplied by a random factor."""
     begun, start = _begun(found, rng)
-    laying, spread = yard.settings.laying, yard.settings.search.spread
     names = ("apart", "top", "width", "turn", "rest", "wedge", "llc")
-    varied = {name: getattr(laying, name) * math.exp(spread * rng.normal()) for name in names}
-    return _laid(begun, start, yard, rng, replace(laying, **varied))
+    laying = multiplied(yard.settings.laying, names, yard.settings.search.spread, rng)
+    return _laid(begun, start, yard, rng, laying)
 
 
 def _begun(found: FoundWall, rng: Generator) -> tuple[Courses, Build]:

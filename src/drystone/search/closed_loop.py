@@ -18,7 +18,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from drystone.kernels.polygons import area_and_centroid
 from drystone.kernels.profiles import HeightProfile, bare, hanging, raised
 from drystone.model.builder import BuilderErrors, Built, as_planned, stratified
 from drystone.model.outlines import Outlined
@@ -30,7 +29,7 @@ from drystone.search.rehearsal import (
     IN_ENGINE,
     Groups,
     RehearsalRun,
-    StoneEnd,
+    end_of,
     errors_of,
     mean_size,
 )
@@ -190,19 +189,14 @@ def _lowest(
 
 
 def rehearse_closed(
-    groups: Groups,
-    errors: BuilderErrors,
-    rng: np.random.Generator,
-    *,
-    mu: float = 0.58,
-    settle: SettleSettings | None = None,
+    groups: Groups, errors: BuilderErrors, rng: np.random.Generator, *, mu: float = 0.58
 ) -> ClosedRun:
     """Build a wall once with errors, and plan the rest again after every stone.
 
     The outlines and the first slip with every stone are those of
     :func:`drystone.search.rehearsal.rehearse` for the same random numbers.
     """
-    work = _Work(groups, errors, rng, BuiltWall(mu, settle or SettleSettings()))
+    work = _Work(groups, errors, rng, BuiltWall(mu, SettleSettings()))
     for stone in work.stones:
         work.lay(stone, stone.planned(), SURE)
     rooms = Counter[int]()
@@ -218,15 +212,10 @@ def rehearse_closed(
             break
         rooms[lacking.id] += 1
         work.make_room(lacking)
-    laid, ends = work.wall.laid, []
-    for (block, corners), *_ in groups:
-        if (built := laid.get(block)) is None:
-            ends.append(StoneEnd(block, True, None, None))
-            continue
-        _, x, y = area_and_centroid(corners)
-        away = math.hypot(built.x - x, built.y - y) / built.size
-        ends.append(StoneEnd(block, False, away, math.remainder(built.angle_deg, 360.0)))
-    return ClosedRun(tuple(ends), tuple((i, b.corners) for i, b in laid.items()), again=work.again)
+    laid = work.wall.laid
+    ends = (end_of(one.id, one.seen, laid.get(one.id)) for one in work.stones)
+    stones = tuple(replace(end, fallen=end.stone not in laid) for end in ends)
+    return ClosedRun(stones, tuple((i, b.corners) for i, b in laid.items()), again=work.again)
 
 
 class _Work:

@@ -17,7 +17,7 @@ from drystone.model.outlines import Outlined
 from drystone.model.placement import Side
 from drystone.model.stone import Stone
 from drystone.planner.build import Build, Candidate, Proposal, Solves
-from drystone.planner.evaluate import Evaluator, Loaded
+from drystone.planner.evaluate import Evaluator, Loaded, trouble
 from drystone.planner.search_settings import LayingSettings
 from drystone.planner.views import SideView
 from drystone.poses import wrap_deg
@@ -33,9 +33,6 @@ Laid as planned, turned by half, or elsewhere in its course after it could not b
 Not laid: it is in the wall already; there is nowhere to let it go near its planned top; it rests
 nowhere there (of stones on outlines); or the wall would not stand.
 """
-
-LAID: tuple[Status, ...] = ("as planned", "half turn", "elsewhere")
-"""Of a stone that is in the wall by the plan."""
 
 HALVES: tuple[tuple[Status, float], ...] = (("as planned", 0.0), ("half turn", 180.0))
 """Turns from the planned pose that are tried, one after the other."""
@@ -139,7 +136,7 @@ class Mason:
                 _, reached[side] = _seen_from(side, min(x_px), max(x_px), width_px)
         # What could not be laid is tried anywhere in its course, from its own side first.
         for k, one in enumerate(became):
-            if one.status in LAID or one.status == "used":
+            if one.action is not None or one.status == "used":
                 continue
             status, solves = one.status, one.solves
             for side in sorted(SIDES, key=lambda side: side != one.stone.side):
@@ -202,16 +199,16 @@ class Mason:
         while places:
             rated = self._rated(build, stone, places)
             places = places[len(rated) :]
-            solves += sum((_solves(one.loaded) for one in rated), Solves())
+            solves += sum((trouble(one.loaded) for one in rated), Solves())
             # What stands is asked of the best of them first: most often it does.
             for one in sorted(rated, key=attrgetter("cost")):
                 if one.cost == math.inf:
                     break
                 sturdy = self.evaluator.sturdily(build, one.blocks)
                 if sturdy is not None:
-                    solves += _solves(sturdy, _solves(one.loaded))
-                if sturdy is not None and not sturdy.grown.resistance.stable:
-                    continue
+                    solves += trouble(one.loaded, sturdy) - trouble(one.loaded)
+                    if not sturdy.grown.resistance.stable:
+                        continue
                 place = one.place
                 stabilised = settled_in(
                     build.wall, stone, side, place.repose, place.wedge,
@@ -248,13 +245,6 @@ class Mason:
             rated.append(_RatedPlace(place, spot, blocks, loaded, cost))
             best, standing = min(best, cost), standing + (llc > 0.0)
         return rated
-
-
-def _solves(loaded: Loaded, known: Solves | None = None) -> Solves:
-    """Count the trouble with a place, once in both models."""
-    known = known or Solves()
-    failed, cold = loaded.grown.resistance.failed, loaded.grown.solved_cold
-    return Solves(int(failed and not known.failed), int(cold and not known.cold))
 
 
 def _seen_from(side: Side, left: float, right: float, width: float) -> tuple[float, float]:

@@ -7,7 +7,7 @@ import threading
 import weakref
 from collections.abc import Iterator, Mapping
 from concurrent.futures import Executor, ThreadPoolExecutor
-from contextlib import contextmanager, suppress
+from contextlib import AbstractContextManager, contextmanager, suppress
 from multiprocessing import Pipe
 from multiprocessing.connection import Connection
 from typing import Any
@@ -30,28 +30,25 @@ With the usual 700 it takes a twelfth of the time of a search.
 """
 
 
-@contextmanager
-def processes(count: int) -> Iterator[Executor | None]:
+def processes(count: int) -> AbstractContextManager[Executor | None]:
     """Start processes; they end with the block, whatever they do then."""
     executor = process_pool(count, MUCH_MEMORY) if count != 1 else None
-    try:
-        yield executor
-    finally:
-        if executor is not None:
-            with held():
-                executor.shutdown(wait=True, kill_workers=True)
+    return _ending(executor, kill_workers=True)
+
+
+def threads(count: int) -> AbstractContextManager[Executor | None]:
+    """Start threads that evaluate candidates; with 1, nothing is started and None is given."""
+    return _ending(ThreadPoolExecutor(count) if count != 1 else None)
 
 
 @contextmanager
-def threads(count: int) -> Iterator[Executor | None]:
-    """Start threads that evaluate candidates; with 1, nothing is started and None is given."""
-    executor = ThreadPoolExecutor(count) if count != 1 else None
+def _ending(executor: Any, **how: bool) -> Iterator[Executor | None]:
     try:
         yield executor
     finally:
         if executor is not None:
             with held():
-                executor.shutdown()
+                executor.shutdown(**how)
 
 
 def process_pool(count: int, env: Mapping[str, str]) -> Any:

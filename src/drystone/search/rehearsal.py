@@ -100,18 +100,13 @@ def errors_of(groups: Groups, errors: BuilderErrors, rng: np.random.Generator) -
 
 
 def rehearse(
-    groups: Groups,
-    errors: BuilderErrors,
-    rng: np.random.Generator,
-    *,
-    mu: float = 0.58,
-    settle: SettleSettings | None = None,
+    groups: Groups, errors: BuilderErrors, rng: np.random.Generator, *, mu: float = 0.58
 ) -> RehearsalRun:
     """Build a wall once, stone after stone as planned, each with its own errors (open loop).
 
     Stones may stand out over the ends of the wall.
     """
-    return put_up(groups, errors_of(groups, errors, rng), mu, settle or SettleSettings())
+    return put_up(groups, errors_of(groups, errors, rng), mu, SettleSettings())
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,13 +143,14 @@ def put_up(
         begins = block if falls and before.laid_last is None else before.laid_last
         states.append(RunState(wall, begins))
     wall = states[-1].wall
-    ends = tuple(_end(block, at, wall.laid.get(block)) for block, at in planned.items())
+    ends = tuple(end_of(block, at, wall.laid.get(block)) for block, at in planned.items())
     fallen = {end.stone for end in ends if end.fallen}
     lies = tuple((i, b.corners) for i, b in wall.laid.items() if i not in fallen)
     return RehearsalRun(ends, lies, laid_last=states[-1].laid_last)
 
 
-def _end(block: int, at: Built, built: Built | None) -> StoneEnd:
+def end_of(block: int, at: Built, built: Built | None) -> StoneEnd:
+    """Say what became of a stone that was planned at a place; None where it does not rest."""
     if built is None:
         return StoneEnd(block, True, None, None)
     share = math.hypot(built.x - at.x, built.y - at.y) / built.size
@@ -175,7 +171,7 @@ def rehearse_in_engine(
         before, after = ((one - one.mean(axis=0)) @ (1, 1j) for one in (built.corners, corners))
         turn_deg = wrap_deg(built.angle_deg + math.degrees(cmath.phase(np.vdot(before, after))))
         ended = replace(built, x=x, y=y, angle_deg=turn_deg)
-        ends.append(_end(block, as_planned(planned[1]), ended))
+        ends.append(end_of(block, as_planned(planned[1]), ended))
     fallen = {end.stone for end in ends if end.fallen}
     lies = tuple((i, corners) for i, corners in found.outlines.items() if i not in fallen)
     if fallen:

@@ -1,10 +1,14 @@
 """Selecting the best action: hierarchical filters, then a weighted sum (§3.8, Algorithm 2)."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import chain
+from typing import TypeVar
 
 from drystone.indices import Indices
+
+Item = TypeVar("Item")
 
 TIE_DIGITS = 9
 """Sums that contain LLC are equal to the precision of the limit analysis."""
@@ -105,8 +109,12 @@ def _at_least_mean(actions: Sequence[Action], pool: Sequence[int], term: int) ->
     if term == 2:  # IS of boundary stones, IWR of inner ones
         boundary = [k for k in pool if actions[k].indices.boundary]
         groups = [boundary, [k for k in pool if not actions[k].indices.boundary]]
-    kept = []
-    for group in filter(None, groups):
-        mean = math.fsum(actions[k].terms[term] for k in group) / len(group)
-        kept += [k for k in group if actions[k].terms[term] >= mean - MEAN_SLACK]
-    return sorted(kept)
+    kept = (at_least_mean(group, lambda k: actions[k].terms[term]) for group in groups if group)
+    return sorted(chain(*kept))
+
+
+def at_least_mean(pool: Sequence[Item], value: Callable[[Item], float]) -> list[Item]:
+    """Keep what reaches the mean of all."""
+    values = [value(one) for one in pool]
+    least = math.fsum(values) / len(values) - MEAN_SLACK
+    return [one for one, worth in zip(pool, values, strict=True) if worth >= least]

@@ -86,8 +86,6 @@ def settling_rules(size: float, mu: float, settle: SettleSettings) -> SettlingRu
 
 def moved(around: Polygons, pushed: dict[int, float]) -> Polygons:
     """Return polygons of which some are moved along x."""
-    if not pushed:
-        return around
     corners, boxes = around.corners.copy(), around.boxes.copy()
     for i, x in pushed.items():
         corners[around.first[i] : around.first[i + 1], 0] += x

@@ -17,7 +17,7 @@ from drystone.drawing.outlines import label_regions
 from drystone.drawing.palette import OUTLINE_COLOUR
 from drystone.kernels.lowering import Positions
 from drystone.kernels.raster import Mask
-from drystone.kernels.spots import eq12_merits
+from drystone.kernels.spots import Eq12, eq12_merits
 from drystone.model.pose import PosedStone
 from drystone.model.wall import Labels
 from drystone_lab.pictures.walls import plot_landscape
@@ -122,10 +122,8 @@ class PositionTrial:
         """Return Eq. 12 at some positions."""
         moment, posed = self.place.moment, self.place.posed
         landscape, beta = moment.landscape, moment.settings.placement.beta
-        built = landscape.built_height_px
-        return eq12_merits(
-            positions, posed.silhouette, landscape.rays, built, posed.anchor[0], beta
-        )
+        eq12 = Eq12(landscape.built_height_px, posed.anchor[0], beta)
+        return eq12_merits(positions, posed.silhouette, landscape.rays, eq12)
 
 
 def trial(context: Context, wall: Target = PR) -> PositionTrial:

@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from types import MappingProxyType
 
-from drystone.selection.algorithm2 import MEAN_SLACK
+from drystone.selection.algorithm2 import at_least_mean
 from drystone.selection.policies.choices import Largest, Sieve, lacking_support
 from drystone.selection.policies.learned import FEATURES, ValueModel, shipped_model
 from drystone.selection.policies.settings import PolicySettings
@@ -83,19 +83,13 @@ def filtered(components: Sequence[str], *, contacts: bool = False) -> Sieve:
     """
     by_contacts = {"interlocking": _most_touching} if contacts else {}
     return Sieve(
-        [by_contacts.get(part, partial(_at_least_mean, TERMS[part])) for part in components]
+        [by_contacts.get(part, partial(at_least_mean, value=TERMS[part])) for part in components]
     )
 
 
 def _most_touching(pool: Sequence[Offer]) -> list[Offer]:
     most = max(len(offer.touches) for offer in pool)
     return [offer for offer in pool if len(offer.touches) == most]
-
-
-def _at_least_mean(term: Callable[[Offer], float], pool: Sequence[Offer]) -> list[Offer]:
-    values = [term(offer) for offer in pool]
-    least = math.fsum(values) / len(values) - MEAN_SLACK
-    return [offer for offer, value in zip(pool, values, strict=True) if value >= least]
 
 
 def learned_parts(components: Sequence[str]) -> ValueModel:
