@@ -301,15 +301,6 @@ def least(function, near):
     return minimize_scalar(function, bounds=bounds, method="bounded", options={"xatol": 1e-12})
 
 
-def test_a_stack_of_bricks_with_offsets():
-    wall = []
-    for course, x in enumerate([50.0, 57.0, 48.5, 54.25, 46.0]):
-        found = exactly(BRICK, (x, 10.0 * course + 6.0, 0.0), wall, 20.0)
-        assert found.status == Status.RESTS
-        assert found[1:4] == pytest.approx((x, 10.0 * course + 5.0, 0.0), abs=2e-5)
-        wall.append(at(BRICK, found.x, found.y))
-
-
 @pytest.mark.parametrize("side", [-1, 1])
 def test_a_corbel_carries_itself_up_to_half_its_length(side):
     low = [at(BRICK, 50.0, 5.0)]

@@ -45,9 +45,6 @@ class _Step:
         views = [Landscape.of(self.build.wall, side) for side in sides]
         return [StoneTrial(group, view) for view in views for group in groups]
 
-    def all(self):
-        return list(self.proposer().proposals(self.trials(), one_by_one))
-
 
 def _key(proposal):
     """What tells a proposal from others, as that of the drop from which it comes."""
@@ -228,22 +225,22 @@ def test_bricks_fill_a_wall_exactly(width, changes):
 
 @scenes.RULES
 def test_what_was_asked_before_does_not_matter(rule):
-    """A proposer that was asked before for some of the trials gives the same."""
+    """A proposer that was asked before for other trials, and for some of these, gives the same."""
     step = _Step(scenes.rubble(1), scenes.RUBBLE_SITE, 2, {"selection_rule": rule})
     trials = step.trials()
     warm = step.proposer()
     for part in (trials[3:7], trials[5:]):
         list(warm.proposals(part, one_by_one))
 
-    def told(batches):
+    def told(proposer):
         return [
             (p.stone_id, p.spot, p.cost, p.stabilised.placement.exact.corners.tobytes())
-            for batch in batches
+            for batch in proposer.proposals(trials[::2], one_by_one)
             for p in batch
         ]
 
-    assert told(list(warm.proposals(trials, one_by_one))) == told(step.all())
-    assert warm.tried == len(trials)
+    assert told(warm) == told(step.proposer())
+    assert warm.tried == len(trials) - 1
 
 
 def test_wedge_limits_are_in_source_px():
@@ -302,22 +299,6 @@ def test_a_promise_is_the_least_that_a_stone_costs_where_it_stays():
             assert spotted.promise <= proposal.cost + 1e-9
             stays += 1
     assert stays > 10
-
-
-@pytest.mark.parametrize("geometry", ["raster", "exact"])
-@scenes.RULES
-def test_what_is_proposed_is_of_the_trials_and_none_of_it_is_in_the_way(geometry, rule):
-    changes = {"geometry": geometry, "selection_rule": rule}
-    step = _Step(scenes.rubble(2), scenes.RUBBLE_SITE, 2, settings=scenes.greedy(changes))
-    trials, wall = step.trials(("right",))[::2], step.build.wall
-    found = [p for batch in step.proposer().proposals(trials, one_by_one) for p in batch]
-    assert {_key(p)[0] for p in found} <= {trial.key for trial in trials}
-    assert len(found) > 2
-    for proposal in found:
-        placement = proposal.stabilised.placement
-        assert not wall.occupied[placement.window][placement.posed.mask].any()
-        after = wall.add(placement, proposal.stabilised.wedges)
-        assert np.count_nonzero(after.occupied) > np.count_nonzero(wall.occupied)
 
 
 @pytest.mark.parametrize("geometry", ["raster", "exact"])

@@ -74,18 +74,6 @@ def test_equal_values_do_not_vanish_by_rounding(name):
         assert (selected.survivors[1], selected.position) == ((0, 1), 1)
 
 
-def test_boundary_and_inner_stones_are_compared_among_their_own_kind():
-    inner = [action(1, IWR=0.9), action(2, IWR=0.7)]
-    boundary = [action(3, IS=0.2, boundary=True), action(4, IS=0.1, boundary=True)]
-    selected = select_action([*inner, *boundary])
-    # Against a common mean of .475 both inner ones would pass and no boundary stone.
-    assert selected.survivors == ((0, 1, 2, 3),) * 3 + ((0, 2),) * 3
-    # A better boundary stone survives for the later filters.
-    better = action(3, IS=0.2, GDS=0.9, boundary=True)
-    selected = select_action([*inner, better])
-    assert selected.position == 2
-
-
 CLUSTERS = {1: 1, 2: 1, 3: 1, 5: 2, 8: 2, 9: 3, 70_000: 4}
 ALL = tuple(CLUSTERS)
 
