@@ -172,9 +172,16 @@ def outlines(planner):
 
 def done(planner):
     """All that a planner did, with its figures."""
-    figures = [(a.indices, a.resistance.value, a.course_height_px) for a in planner.build.actions]
+    figures = [
+        (a.indices, a.resistance.left.alpha, a.resistance.right.alpha, a.course_height_px, a.sturdy)
+        for a in planner.build.actions
+    ]
+    placed = [
+        (group.placement.rotation_moves, [(wedge.id, wedge.under) for wedge in group.wedges])
+        for group in planner.build.wall.groups
+    ]
     labels = planner.build.wall.labels.tobytes()
-    return order(planner), figures, outlines(planner), labels, planner.stopped
+    return order(planner), figures, placed, outlines(planner), labels, planner.stopped
 
 
 def same(one, other):

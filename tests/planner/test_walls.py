@@ -54,39 +54,23 @@ def test_the_default_finishes_the_first_course_before_the_second(stones, site):
     assert above >= 4
 
 
-def _on_pillars(settings, low_px, ids=(1, 2, 3)):
-    """A wall of two pillars, one 20 px high, and a slab as it is placed on them."""
+@pytest.mark.parametrize("ids", [(3, 5, 7), (70_000, 300, 5), (300, 1, 70_000)])
+def test_wedges_are_numbered_after_the_largest_id(ids):
+    """A slab that one pillar carries at its end, and a lower pillar does not reach."""
+    settings = ds.PlannerSettings().updated({"stabilise": {"method": "wedge"}})
     high, low, slab = ids
-    stones = scenes.blocks({high: (20, 20), low: (20, low_px), slab: (60, 8)})
+    stones = scenes.blocks({high: (20, 20), low: (20, 16), slab: (60, 8)})
     planner = ds.Planner(stones, ds.Site(60, 40), settings=settings)
     workshop, wall = planner.workshop, planner.build.wall
     for stone_id, left in ((high, 0), (low, 40)):
         posed = workshop.initial(stone_id)
         wall = wall.add(Placement(posed, 40 - posed.height_px, left))
     planner.restore(wall, {})
-    build, view = planner.build, Landscape.of(wall)
-    proposer = RasterProposer(workshop, settings, build, Profile())
+    pillars, view = planner.build, Landscape.of(wall)
+    proposer = RasterProposer(workshop, settings, pillars, Profile())
     proposal = proposer.stabilised(proposer.spotted(StoneTrial(workshop.poses(slab), view)))
-    return build, Evaluator(settings, workshop.stock).judge(build, view, proposal)
-
-
-@pytest.mark.parametrize("settings", [ds.PlannerSettings(), scenes.RASTER], ids=["paper", "best"])
-def test_a_stone_bridges_two_pillars_without_a_wedge(settings):
-    _, candidate = _on_pillars(settings, 20)
-    placement = candidate.stabilised.placement
-    assert (placement.row, placement.col, placement.rotation_moves) == (12, 0, 0)
-    assert candidate.stabilised.wedges == ()
-    assert candidate.resistance.stable
-    assert candidate.resistance.value > 0.3
-
-
-@pytest.mark.parametrize("ids", [(3, 5, 7), (70_000, 300, 5), (300, 1, 70_000)])
-def test_wedges_are_numbered_after_the_largest_id(ids):
-    """A slab that one pillar carries at its end, and a lower pillar does not reach."""
-    settings = ds.PlannerSettings().updated({"stabilise": {"method": "wedge"}})
-    pillars, candidate = _on_pillars(settings, 16, ids)
-    build = pillars.add(candidate)
-    assert [(wedge.id, wedge.under) for wedge in build.wall.wedges] == [(max(ids) + 1, ids[2])]
+    build = pillars.add(Evaluator(settings, workshop.stock).judge(pillars, view, proposal))
+    assert [(wedge.id, wedge.under) for wedge in build.wall.wedges] == [(max(ids) + 1, slab)]
     assert {int(label) for label in np.unique(build.wall.labels)} == {0, *ids, max(ids) + 1}
     assert build.actions[-1].resistance.stable
 

@@ -93,7 +93,6 @@ def test_a_process_that_remembers_much_is_kept():
         assert grown <= both_at_work(workers)
 
 
-@pytest.mark.usefixtures("interruptible")
 @pytest.mark.parametrize(
     ("start", "pool"), [(processes, ProcessPoolExecutor), (threads, ThreadPoolExecutor)]
 )
