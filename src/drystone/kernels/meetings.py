@@ -88,7 +88,6 @@ class Meetings(NamedTuple):
     normals: Points  # (k, 2) unit vectors into the polygon
 
     def __len__(self) -> int:
-        """Return the number of contacts."""
         return len(self.others)
 
 

@@ -35,7 +35,6 @@ class Polygons(NamedTuple):
     edges: Points  # (n, 3) unit vector (x, y) from each corner to the next one, and their distance
 
     def __len__(self) -> int:
-        """Return how many polygons there are."""
         return len(self.first) - 1
 
     def polygon(self, index: int) -> Points:

@@ -12,7 +12,7 @@ from drystone.kernels.lowering import skyline
 from drystone.kernels.raster import Mask, mirrored
 from drystone.kernels.rays import RaySums
 from drystone.kernels.silhouette import Ints
-from drystone.model.placement import Side
+from drystone.model.placement import Placement, Side
 from drystone.model.pose import PosedStone
 from drystone.model.wall import Wall
 
@@ -102,6 +102,12 @@ class Landscape:
     def view_col(self, posed: PosedStone, col: int) -> int:
         """Turn a column of the wall image into one of this view, or back."""
         return col if self.side == "left" else self.width_px - col - posed.width_px
+
+    def placed(self, placement: Placement) -> tuple[PosedStone, Box]:
+        """Return a placed stone as it appears in this view, and its box."""
+        posed = self.view(placement.posed)
+        col = self.view_col(placement.posed, placement.col)
+        return posed, view_box(posed, placement.row, col, self.height_px)
 
 
 def view_box(posed: PosedStone, row: int, col: int, height_px: int) -> Box:

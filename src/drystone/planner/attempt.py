@@ -91,8 +91,7 @@ class Attempt:
         any stands.
         """
         for proposals in self._proposals(tuple(self._landscapes.values()), among):
-            judged = self._judge(proposals)
-            found = [c for c in judged if c.stands]
+            found = [candidate for candidate in self._judge(proposals) if candidate.stands]
             if found:
                 return found
         return []

@@ -22,7 +22,6 @@ class Solves:
     cold: int = 0  # it had to start anew, which costs time alone
 
     def __add__(self, other: "Solves") -> "Solves":
-        """Add up."""
         return Solves(self.failed + other.failed, self.cold + other.cold)
 
     def __sub__(self, other: "Solves") -> "Solves":

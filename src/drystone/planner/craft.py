@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from drystone.indices import interlocking_width_ratio, inward_slope, is_boundary, left_neighbour
 from drystone.kernels.support import free_below, free_beside
-from drystone.model.landscape import Landscape, view_box
+from drystone.model.landscape import Landscape
 from drystone.model.pose import PosedStone
 from drystone.model.wall import Group
 from drystone.planner.stock import Rest, Stock
@@ -20,16 +20,14 @@ def action_craft(landscape: Landscape, stabilised: Group, stock: Stock, rest: Re
 
     The landscape is that before the action, seen from the side from which the stone is placed.
     """
-    placement = stabilised.placement
-    posed = landscape.view(placement.posed)
-    at = placement.row, landscape.view_col(placement.posed, placement.col)
-    box = view_box(posed, *at, landscape.height_px)
+    posed, box = landscape.placed(stabilised.placement)
+    at = stabilised.placement.row, box.left
     wedges_px = sum(wedge.area_px for wedge in stabilised.wedges)
     height, void, gap, slot, headroom = _room(landscape, posed, at, stock, rest, wedges_px)
     neighbour = left_neighbour(landscape, box)
     step = 0.0 if neighbour is None else abs(box.top - neighbour.top) / stock.mean_height_px
     if is_boundary(landscape, box, stock.narrowest_px):
-        third = inward_slope(landscape, posed, at[1])
+        third = inward_slope(landscape, posed, box.left)
     else:
         third = interlocking_width_ratio(landscape, box, stock.narrowest_px)
     return Craft(

@@ -3,6 +3,8 @@
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import asdict, dataclass, replace
+from itertools import groupby
+from operator import attrgetter
 
 import numpy as np
 
@@ -82,20 +84,17 @@ def in_order(dropped: Sequence[Dropped], book: OutlineBook) -> Iterator[Drop]:
     owner = np.repeat(np.arange(len(places)), sizes)
     spot = np.arange(len(rows)) - np.repeat(np.cumsum(sizes) - sizes, sizes)
     order = np.argsort(rows[:, 2], kind="stable")
-    equal: list[Drop] = []
-    for at, spot_at, (x, y, cost, _) in zip(
-        owner[order].tolist(), spot[order].tolist(), rows[order].tolist(), strict=True
-    ):
-        trial, posed = owners[at]
+
+    def drop(at: int) -> Drop:
+        trial, posed = owners[owner[at]]
         one = trial if len(trial.poses) == 1 else replace(trial, poses=(posed,))
         left = book.hung(posed.stone, posed.angle_deg, trial.landscape.side).profile.left
-        drop = Drop(one, spot_at, (x - left, y), round(cost, 12))
-        # Rounding keeps the order of costs, except that it makes some equal.
-        if equal and equal[-1].cost != drop.cost:
-            yield from sorted(equal, key=_rank)
-            equal = []
-        equal.append(drop)
-    yield from sorted(equal, key=_rank)
+        x, y, cost, _ = rows[at].tolist()
+        return Drop(one, int(spot[at]), (x - left, y), round(cost, 12))
+
+    # Rounding keeps the order of costs, except that it makes some equal.
+    for _, equal in groupby(map(drop, order.tolist()), key=attrgetter("cost")):
+        yield from sorted(equal, key=_rank)
 
 
 def _rank(drop: Drop) -> tuple[object, ...]:

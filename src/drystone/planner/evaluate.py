@@ -15,9 +15,8 @@ from drystone.indices import (
     neighbour_height_ratio,
     shape_factor,
 )
-from drystone.model.landscape import Landscape, view_box
+from drystone.model.landscape import Box, Landscape
 from drystone.model.outlines import Outlined
-from drystone.model.placement import Placement
 from drystone.model.wall import Group, outlined
 from drystone.planner.build import Build, Candidate, Proposal, Solves
 from drystone.planner.deadline import NEVER, Deadline
@@ -52,16 +51,12 @@ class Evaluator:
 
         The landscape is that of the wall before, seen from the side of the stone.
         """
-        group = proposal.stabilised
-        if build.wall.outlines is None:
+        group, wall = proposal.stabilised, build.wall
+        if wall.outlines is None:
             self.until.look()
             with self.profile.part("contacts"):
                 model = model_with(
-                    build.analysis.model,
-                    build.wall.labels,
-                    group.placement,
-                    group.wedges,
-                    build.points,
+                    build.analysis.model, wall.labels, group.placement, group.wedges, build.points
                 )
             return self.candidate(landscape, proposal, self._loaded(build.analysis, model))
         blocks = outlined(group.placement, group.wedges)
@@ -85,9 +80,8 @@ class Evaluator:
                 self.stock.narrowest_px,
             )
         judged = Candidate(
-            proposal, indices, course_height, loaded.model, resistance,
-            solves=trouble(loaded),
-        )  # fmt: skip
+            proposal, indices, course_height, loaded.model, resistance, solves=trouble(loaded)
+        )
         if sturdy is None:
             return judged
         with self.profile.part("limit analysis"):
@@ -124,9 +118,8 @@ class Evaluator:
         """Return a candidate that was judged before, compared with other candidates (Eq. 8)."""
         if proposal.course_height_px == judged.proposal.course_height_px:
             return judged
-        nhr, course_height = _first_or_next(
-            landscape, proposal.stabilised.placement, proposal.course_height_px
-        )
+        _, box = landscape.placed(proposal.stabilised.placement)
+        nhr, course_height = _first_or_next(landscape, box, proposal.course_height_px)
         indices = replace(judged.indices, NHR=nhr)
         return replace(judged, proposal=proposal, indices=indices, course_height_px=course_height)
 
@@ -152,17 +145,15 @@ def action_indices(
     there are none; `narrowest_px` the width of the narrowest stone of the set.
     """
     placement = group.placement
-    posed = landscape.view(placement.posed)
-    col = landscape.view_col(placement.posed, placement.col)
-    box = view_box(posed, placement.row, col, landscape.height_px)
-    nhr, course_height = _first_or_next(landscape, placement, course_height_px)
+    posed, box = landscape.placed(placement)
+    nhr, course_height = _first_or_next(landscape, box, course_height_px)
     indices = Indices(
         SF=shape_factor(placement.posed),
-        LFR=local_filling_ratio_at(landscape, posed, placement.row, col),
+        LFR=local_filling_ratio_at(landscape, posed, placement.row, box.left),
         GDS=geometrical_dice_score_at(landscape, posed, placement.row),
         NHR=nhr,
         IWR=interlocking_width_ratio(landscape, box, narrowest_px),
-        IS=inward_slope(landscape, posed, col),
+        IS=inward_slope(landscape, posed, box.left),
         LLC=resistance.value,
         boundary=is_boundary(landscape, box, narrowest_px),
     )
@@ -170,12 +161,9 @@ def action_indices(
 
 
 def _first_or_next(
-    landscape: Landscape, placement: Placement, course_height_px: float | None
+    landscape: Landscape, box: Box, course_height_px: float | None
 ) -> tuple[float, float | None]:
     """Return NHR, and the mean height of Eq. 8 when the stone begins a course."""
-    posed = landscape.view(placement.posed)
-    col = landscape.view_col(placement.posed, placement.col)
-    box = view_box(posed, placement.row, col, landscape.height_px)
     neighbour = left_neighbour(landscape, box)
     nhr = neighbour_height_ratio(box, neighbour, course_height_px)
     return nhr, course_height_px if neighbour is None else None

@@ -113,7 +113,8 @@ def places_in(
     InputError: E196: the picture is not one of the wall; E195: an id is not that of a stone; E197:
     much of a stone is not to be seen, or more than there is of it.
     """
-    scale = _scale_of(np.asarray(labels), wall.site)
+    site = wall.site
+    scale = _scale_of(np.asarray(labels), site)
     planned = {p.stone_id: p for p in wall.placements}
     ids = set(np.unique(labels).tolist()) - {0} - {wedge.id for wedge in wall.wedges}
     require_known(ids, stones)
@@ -127,10 +128,8 @@ def places_in(
         if placement is None:
             found[stone_id] = fitted(seen, stone.outline, scale, None)
             continue
-        x, y = placement.centroid(wall.site.height_px)
-        there = MeasuredPlace(
-            x / wall.site.scale, y / wall.site.scale, placement.posed.angle_deg, True
-        )
+        x, y = placement.centroid(site.height_px)
+        there = MeasuredPlace(x / site.scale, y / site.scale, placement.posed.angle_deg, True)
         planned_px = np.asarray(expected == stone_id)
         # How many pixels differ, over how many are at the rim of what was planned.
         rim = int((planned_px & ~ndimage.binary_erosion(planned_px)).sum())

@@ -204,7 +204,6 @@ class RasterProposer(Proposer):
         settings = self.settings.placement
         if settings.reach == "any":
             return True
-        placement = stabilised.placement
-        posed, col = placement.posed, landscape.view_col(placement.posed, placement.col)
-        view = landscape.view(posed)
-        return can_be_lowered(landscape, view, placement.row, col, settings.clearance_px)
+        view, box = landscape.placed(stabilised.placement)
+        row = stabilised.placement.row
+        return can_be_lowered(landscape, view, row, box.left, settings.clearance_px)

@@ -14,14 +14,7 @@ from itertools import accumulate, takewhile
 import numpy as np
 
 from drystone.kernels.profiles import Floats
-from drystone.model.builder import (
-    HAND,
-    BuilderErrors,
-    Built,
-    as_planned,
-    put_down_with,
-    stratified,
-)
+from drystone.model.builder import HAND, BuilderErrors, Built, as_planned, put_down_with, stratified
 from drystone.model.stone import Stone
 from drystone.model.wall import Group, Wall, outlined
 from drystone.planner.vary import TRIAL_DRAWS

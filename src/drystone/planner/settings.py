@@ -120,12 +120,6 @@ class PlannerSettings(Ranged):
         check_finite(self)
         super().__post_init__()
         orientation_step_deg(self.orientations)
-        self._check_rule()
-        both = sorted(set(self.ban) & set(self.pin))
-        if both:
-            raise ValueError(f"ban and pin name the same stones: {', '.join(map(str, both))}")
-
-    def _check_rule(self) -> None:
         # Whether there is such a policy is asked where it chooses: a plan can be checked without
         # the package that its policy is of.
         if self.selection_rule in ("", PAPER):
@@ -141,6 +135,9 @@ class PlannerSettings(Ranged):
             raise ValueError(
                 f"the policy {self.selection_rule!r} builds a single wall: search.budget must be 1"
             )
+        both = sorted(set(self.ban) & set(self.pin))
+        if both:
+            raise ValueError(f"ban and pin name the same stones: {', '.join(map(str, both))}")
 
     @property
     def by_policy(self) -> bool:

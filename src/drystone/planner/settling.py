@@ -153,16 +153,12 @@ class ExactProposer(Proposer):
         start = self._beside(drop.start, hung.profile, profile)
         method, settings = self.settings.stabilise.method, self.settings.settle
         with self.profile.part("stabilisation"):
-            stabilised = None
-            repose = come_to_rest(
-                hung.turned, scene, start, settings, turns=method in ("both", "rotation")
-            )
-            if repose is not None:
-                stabilised = self._stabilised(drop, repose)
-            elif method in ("both", "wedge"):  # rotation first, wedging second (§3.7)
+            turns, wedge = method in ("both", "rotation"), None
+            repose = come_to_rest(hung.turned, scene, start, settings, turns=turns)
+            if repose is None and method in ("both", "wedge"):  # rotation first (§3.7)
                 found = wedged(hung.turned, scene, start, settings, self._limits)
-                if found is not None:
-                    stabilised = self._stabilised(drop, *found)
+                repose, wedge = found or (None, None)
+            stabilised = None if repose is None else self._stabilised(drop, repose, wedge)
         if stabilised is None:
             return None
         cost = self._cost(drop.trial, stabilised)
@@ -186,17 +182,11 @@ class ExactProposer(Proposer):
         clear = 2.0 * self.settings.settle.clearance_px
         return (max(beside) + clear - stone.left, y) if beside else start
 
-    def _stabilised(self, drop: Drop, repose: Repose, wedge: Points | None = None) -> Group | None:
+    def _stabilised(self, drop: Drop, repose: Repose, wedge: Points | None) -> Group | None:
         """Return a stone that rests, with the pixels that it fills; None when it is too high."""
-        wall, posed = self.build.wall, drop.trial.poses[0]
+        wall, stone, side = self.build.wall, drop.trial.poses[0].stone, drop.trial.landscape.side
         beyond_px = self.settings.settle.beyond_px
         if repose.settled.corners[:, 1].max() > wall.site.extent_px[1] + beyond_px:
             return None
-        return settled_in(
-            wall,
-            posed.stone,
-            drop.trial.landscape.side,
-            repose,
-            wedge,
-            wedge_id=self.workshop.next_wedge(self.build),
-        )
+        number = self.workshop.next_wedge(self.build)
+        return settled_in(wall, stone, side, repose, wedge, wedge_id=number)

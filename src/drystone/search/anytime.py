@@ -172,8 +172,8 @@ def _together(walls: Sequence[PackedWall]) -> Reached:
 
 def _links(found: Sequence[PackedWall], number: int, chains: int) -> list[Link]:
     """Begin a round's chains from the most promising; from the first again where there are few."""
-    order = sorted(range(len(found)), key=lambda k: (-promised(found[k]), k))
-    starts = [found[order[k] if k < len(order) else order[0]] for k in range(chains)]
+    order = sorted(found, key=promised, reverse=True)
+    starts = [order[k] if k < len(order) else order[0] for k in range(chains)]
     first = number * chains
     return [Link(first + k, 0, start, start, Solves()) for k, start in enumerate(starts)]
 
@@ -233,7 +233,7 @@ def stale(found: Sequence[PackedWall]) -> bool:
 
     Never of a planned wall: improving it wins less than another plan may.
     """
-    best = max(range(len(found)), key=lambda k: (promised(found[k]), -k))
+    best = max(range(len(found)), key=lambda k: promised(found[k]))
     return found[best].courses is None and len(found) - 1 - best >= STALE
 
 
@@ -242,7 +242,7 @@ def planned_share(found: Sequence[PackedWall]) -> float:
 
     On stones of masons plans win; stones with many corners are laid too unlike their plans.
     """
-    order = sorted(range(len(found)), key=lambda k: (-promised(found[k]), k))
-    better = [found[k] for k in order[: (len(found) + 1) // 2]] if len(found) > 1 else []
+    order = sorted(found, key=promised, reverse=True)
+    better = order[: (len(found) + 1) // 2] if len(found) > 1 else []
     planned = sum(wall.courses is not None for wall in better)
     return (planned + SHARE * WEIGHT) / (len(better) + WEIGHT)

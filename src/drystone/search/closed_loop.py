@@ -25,14 +25,8 @@ from drystone.physics.building import build_up, tilt_of
 from drystone.physics.scatter import Variation
 from drystone.physics.tilt import TiltSettings
 from drystone.planner.vary import TRIAL_DRAWS
-from drystone.search.rehearsal import (
-    IN_ENGINE,
-    Groups,
-    RehearsalRun,
-    end_of,
-    errors_of,
-    mean_size,
-)
+from drystone.search.letting_go import cheapest_apart
+from drystone.search.rehearsal import IN_ENGINE, Groups, RehearsalRun, end_of, errors_of, mean_size
 from drystone.settle.as_built import BuiltWall
 from drystone.settle.putting import FALLEN_DEG, FALLEN_SHARE, astray
 from drystone.settle.settings import SettleSettings
@@ -179,13 +173,8 @@ def _lowest(
         return
     under = np.lib.stride_tricks.sliding_window_view(profile.tops, count)
     lift = (under - hung.bottoms).max(axis=1)
-    free, apart = lift.copy(), max(1, math.ceil(APART * start.size / cell))
-    for _ in range(SPOTS):
-        at = int(free.argmin())
-        if free[at] == np.inf:
-            return
+    for at in cheapest_apart(lift, APART * start.size / cell, SPOTS):
         yield at * cell - hung.left, float(lift[at]), float(lift[at]) + hung.top
-        free[max(0, at - apart + 1) : at + apart] = np.inf
 
 
 def rehearse_closed(

@@ -1,7 +1,7 @@
 """Letting a planned stone go near its place: from where, and where it comes to rest."""
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -44,6 +44,17 @@ class Resting:
     cost: float
 
 
+def cheapest_apart(cost: Floats, apart: float, most: int) -> Iterator[int]:
+    """List the places of least cost that are so far from each other; none of infinite cost."""
+    free, columns = cost.copy(), max(1, math.ceil(apart))
+    for _ in range(most):
+        at = int(free.argmin())
+        if free[at] == np.inf:
+            return
+        yield at
+        free[max(0, at - columns + 1) : at + columns] = np.inf
+
+
 @dataclass(frozen=True, eq=False)
 class Hand:
     """Lets stones go."""
@@ -67,15 +78,8 @@ class Hand:
         # It may go down further as it settles, but not up.
         cost[lift + profile.top > aim.top_px + settings.astray * aim.unit_px] = np.inf
         least = settings.apart if aim.left_px is not None else settings.spread
-        apart = max(1, math.ceil(least * stone.size_px / column_px))
-        found: list[Start] = []
-        while len(found) < settings.starts:
-            at = int(cost.argmin())
-            if cost[at] == np.inf:
-                break
-            found.append((float(left[at]) - profile.left, float(lift[at])))
-            cost[max(0, at - apart + 1) : at + apart] = np.inf
-        return found
+        places = cheapest_apart(cost, least * stone.size_px / column_px, settings.starts)
+        return [(float(left[at]) - profile.left, float(lift[at])) for at in places]
 
     def _columns(
         self, stone: StoneProfile, size_px: float, view: SideView, aim: Aim

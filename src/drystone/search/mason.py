@@ -130,9 +130,7 @@ class Mason:
             planned[side], action = right, became[-1].action
             if action is not None:
                 build = build.add(action, keep=True)
-                settled = action.stabilised.placement.settled
-                assert settled is not None  # noqa: S101 - it settled on outlines
-                x_px = settled.corners[:, 0].tolist()
+                x_px = action.stabilised.placement.exact.corners[:, 0].tolist()
                 _, reached[side] = _seen_from(side, min(x_px), max(x_px), width_px)
         # What could not be laid is tried anywhere in its course, from its own side first.
         for k, one in enumerate(became):
@@ -156,9 +154,8 @@ class Mason:
         workshop = self.yard.workshop
         if planned.stone_id not in workshop.remaining(build):
             return StoneLaying(planned, "used")
-        outlines, site = build.wall.outlines, workshop.site
-        assert outlines is not None  # noqa: S101 - a course plan is laid on outlines
-        view = self.views[side] = self.views[side].grown(outlines.polygons)
+        site = workshop.site
+        view = self.views[side] = self.views[side].grown(build.wall.exact.polygons)
         unit_px = workshop.stock.mean_height_px / site.scale
         highest_px = site.extent_px[1] + self.yard.settings.settle.beyond_px
         stone = workshop.stones.by_id(planned.stone_id)

@@ -92,9 +92,7 @@ def _group(one: PackedGroup, workshop: Workshop) -> Group:
     posed = PosedStone(stone, one.angle_deg, workshop.site.scale, UNSEEN.copy(), (0.0, 0.0))
     settled = settled_again(stone, one.angle_deg, one.place, workshop)
     placement = Placement(posed, 0, 0, one.side, one.rotation_moves, settled)
-    wedges = (
-        Wedge(0, one.stone_id, UNSEEN.copy(), 0, 0, np.array(corners)) for corners in one.wedges
-    )
+    wedges = (Wedge(0, one.stone_id, UNSEEN.copy(), 0, 0, np.array(cut)) for cut in one.wedges)
     return Group(placement, tuple(wedges))
 
 

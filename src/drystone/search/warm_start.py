@@ -33,7 +33,7 @@ def begin_with(
         stone_id = group.placement.stone_id
         in_turn = settings.order == "free" or stone_id > last
         if stone_id in allowed and in_turn and _within(wall, group, settings.settle.beyond_px):
-            groups.append(_outlined_as_here(_well_wedged(wall, group, limits), workshop))
+            groups.append(_as_here(wall, group, limits, workshop))
             last = stone_id
     planner.build, _, solves = yard.replayed(planner.build, groups, course_heights_px, strict=False)
     planner.solves += solves
@@ -53,12 +53,16 @@ def _within(wall: Wall, group: Group, beyond_px: float) -> bool:
     )
 
 
-def _well_wedged(wall: Wall, group: Group, limits: WedgeLimits) -> Group:
-    """Leave out the wedges on outlines that no mason would cut, or with nothing beside them."""
-    settled = group.placement.settled
-    if wall.outlines is None or settled is None:
+def _as_here(wall: Wall, group: Group, limits: WedgeLimits, workshop: Workshop) -> Group:
+    """Return a step on outlines as this search has it.
+
+    With its own outline of the stone, that of a plan may be coarser, and without the wedges that
+    no mason would cut or with nothing beside them.
+    """
+    placement, settled = group.placement, group.placement.settled
+    if settled is None:
         return group
-    around, width = wall.outlines.polygons, wall.site.extent_px[0]
+    around, width = wall.exact.polygons, wall.site.extent_px[0]
     kept = (
         wedge
         for wedge in group.wedges
@@ -66,14 +70,6 @@ def _well_wedged(wall: Wall, group: Group, limits: WedgeLimits) -> Group:
         and limits.allows(WedgeShape.of(wedge.corners))
         and not squeezed_out(wedge.corners, settled.corners, around, width, limits)
     )
-    return Group(group.placement, tuple(kept))
-
-
-def _outlined_as_here(group: Group, workshop: Workshop) -> Group:
-    """Return a step with the stone's outline of this search: that of a plan may be coarser."""
-    placement, settled = group.placement, group.placement.settled
-    if settled is None:
-        return group
     place, angle_deg = (settled.x_px, settled.y_px), placement.posed.angle_deg
     again = settled_again(placement.posed.stone, angle_deg, place, workshop)
-    return Group(replace(placement, settled=again), group.wedges)
+    return Group(replace(placement, settled=again), tuple(kept))

@@ -16,13 +16,7 @@ from drystone.model.placement import Wedge
 from drystone.model.wall import Group
 from drystone.planner.build import Build, Solves
 from drystone.planner.deadline import Deadline
-from drystone.search.wedge_draft import (
-    MOST_UNDER_ONE,
-    Motion,
-    WedgeDraft,
-    WedgePlace,
-    wedge_places,
-)
+from drystone.search.wedge_draft import MOST_UNDER_ONE, Motion, WedgeDraft, WedgePlace, wedge_places
 from drystone.search.yard import Yard
 from drystone.statics.model import RigidBlockModel
 

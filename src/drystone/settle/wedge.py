@@ -299,11 +299,7 @@ def extent(points: Points) -> Span:
 
 
 def wedged(
-    stone: Turned,
-    scene: SettlingScene,
-    start: Start,
-    settings: SettleSettings,
-    limits: WedgeLimits,
+    stone: Turned, scene: SettlingScene, start: Start, settings: SettleSettings, limits: WedgeLimits
 ) -> tuple[Repose, Points] | None:
     """Lower a stone without turning it, and wedge it there: where it rests, and its wedge.
 
