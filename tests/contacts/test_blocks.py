@@ -57,8 +57,9 @@ def test_an_empty_image_has_no_blocks():
     [np.ones(4, np.uint32), np.ones((2, 2)), np.array([[1, -1]]), np.ones((2, 2, 3), np.uint8)],
 )
 def test_what_is_no_label_image_is_refused(labels):
-    with pytest.raises(LabelImageError, match="E301"):
-        model_from_labels(labels)
+    for one in (labels, labels.tolist()):
+        with pytest.raises(LabelImageError, match="E301"):
+            model_from_labels(one)
 
 
 @pytest.mark.parametrize("mu", [-0.1, float("nan"), float("inf")])

@@ -62,6 +62,7 @@ def model_from_labels(labels: Labels, mu: float = 0.58) -> ImageModel:
     >>> picture.model.blocks[0].centroid, picture.ground_row, picture.notices[0].code
     ((1.0, 1.0), 2, 'W301')
     """
+    labels = np.asarray(labels)
     if labels.ndim != 2 or labels.dtype.kind not in "iu" or (labels.size and labels.min() < 0):
         what = f"an array of shape {labels.shape} and type {labels.dtype} is not a picture of ids."
         cure = "Give a two-dimensional array of integers: 0 for nothing, ids above 0."

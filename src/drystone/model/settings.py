@@ -7,6 +7,8 @@ import types
 from collections.abc import Iterator, Mapping
 from typing import Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
 
+import numpy as np
+
 from drystone.errors import UsageError, meant
 
 Settings = TypeVar("Settings")
@@ -132,6 +134,7 @@ def check_finite(settings: Any) -> None:
 
 def _checked(value: Any, hint: Any, where: str) -> Any:
     """Return a value of the declared type, or raise UsageError."""
+    value = _plain(value)
     if get_origin(hint) is Literal:
         allowed = get_args(hint)
         if value not in allowed:
@@ -143,7 +146,7 @@ def _checked(value: Any, hint: Any, where: str) -> Any:
         raise _refused(f"the number of {where} is too large.", f"Give one of at most {_MOST}.")
     if get_origin(hint) is tuple:
         kind = get_args(hint)[0]
-        several = value if isinstance(value, list | tuple) else [None]
+        several = list(map(_plain, value)) if isinstance(value, list | tuple) else [None]
         if any(not isinstance(one, kind) or isinstance(one, bool) for one in several):
             wrong = f"{where} = {value!r} has the wrong type."
             wanted = "texts" if kind is str else "whole numbers"
@@ -156,6 +159,11 @@ def _checked(value: Any, hint: Any, where: str) -> Any:
         wanted = " or ".join(_KINDS[kind] for kind in kinds)
         raise _refused(f"{where} = {value!r} has the wrong type.", f"Give {wanted}.")
     return value
+
+
+def _plain(value: Any) -> Any:
+    """Return numbers and arrays of NumPy as Python's own."""
+    return value.tolist() if isinstance(value, np.generic | np.ndarray) else value
 
 
 def _refused(message: str, cure: str) -> UsageError:

@@ -66,7 +66,9 @@ class Site:
             cure = "Give a positive number, or none for a wall in px."
             raise UsageError("E138", what, where="--px-per-m", cure=cure)
         size = working_px(width, scale), working_px(height, scale)
-        return cls(*size, scale, px_per_m, (width, height))
+        # Floats of 32 bits would round what is divided by the scale.
+        px_per_m = None if px_per_m is None else float(px_per_m)
+        return cls(*size, float(scale), px_per_m, (float(width), float(height)))
 
     @property
     def extent_px(self) -> tuple[float, float]:
