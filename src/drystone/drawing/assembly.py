@@ -286,11 +286,8 @@ def read_assembly(
         E131 for another scale than the plan's, or a thickness without a scale; E138 for a scale,
         thickness or density that is not positive and finite.
     """
-    for value, name in (
-        (px_per_m, "px-per-m"),
-        (thickness_m, "thickness"),
-        (density_kg_m3, "density"),
-    ):
+    told = {"px-per-m": px_per_m, "thickness": thickness_m, "density": density_kg_m3}
+    for name, value in told.items():
         if value is not None and not 0.0 < value < math.inf:
             what = f"{value} is not a positive number."
             raise UsageError("E138", what, where=f"--{name}", cure="Give a finite one above 0.")

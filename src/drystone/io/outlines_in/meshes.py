@@ -31,6 +31,7 @@ _EDGE = 0.01
 _NEIGHBOURS = 8
 _STL_FACET = np.dtype([("normal", "<f4", (3,)), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 _STL_VERTEX = re.compile(rb"\bvertex\s+(\S+)\s+(\S+)\s+(\S+)")
+_PLY_CURE = "Copy or export it again, with faces of three corners each or as text."
 _PLY_CORNERS = ("vertex_index", "vertex_indices")
 _PLY_FACES = re.compile(rb"^element\s+face\s+(\d{1,18})", re.MULTILINE)
 
@@ -155,7 +156,7 @@ def _ply(data: bytes) -> Mesh:
     said = _PLY_FACES.search(data)
     if said is None or int(said[1]) == 0:
         raise unusable("the mesh has no faces")
-    with foreign(_cut_ply):
+    with foreign(lambda why: damaged(why, "mesh", _PLY_CURE)):
         mesh = trimesh.load_mesh(io.BytesIO(data), file_type="ply", process=False)
         # As they are written: the mesh has faces of four corners and more in fans.
         points, faces_of = (mesh.metadata["_ply_raw"][name]["data"] for name in ("vertex", "face"))
@@ -170,11 +171,6 @@ def _ply(data: bytes) -> Mesh:
     if least < 3 or not 0 <= corners.min() <= corners.max() < len(vertices):
         raise _cut("a face of less than three corners, or of unknown vertices")
     return _bodies(vertices, faces)
-
-
-def _cut_ply(why: str) -> InputError:
-    cure = "Copy or export it again, with faces of three corners each or as text."
-    return damaged(why, what="mesh", cure=cure)
 
 
 def _cut(why: str) -> InputError:
