@@ -58,8 +58,9 @@ def test_an_empty_image_has_no_blocks():
      np.array([[1, 2**63]], np.uint64), None],
 )  # fmt: skip
 def test_what_is_no_label_image_is_refused(labels):
-    with pytest.raises(LabelImageError, match="E301"):
-        model_from_labels(labels)
+    for one in (labels, np.asarray(labels).tolist()):
+        with pytest.raises(LabelImageError, match="E301"):
+            model_from_labels(one)
 
 
 @pytest.mark.parametrize("mu", [-0.1, float("nan"), float("inf")])

@@ -1,6 +1,7 @@
 """Plans read with the files beside them; parts against their pixels and the plan."""
 
 import json
+import math
 
 import numpy as np
 import pytest
@@ -78,6 +79,12 @@ def test_folder_and_file_are_the_same_plan_of_one_scale(tmp_path):
         read_assembly(metric, px_per_m=200.0)
     with pytest.raises(DrystoneError, match="E131"):  # a thickness needs a scale
         read_assembly(px, thickness_m=0.3)
+    for name in ("px_per_m", "thickness_m", "density_kg_m3"):
+        for value in (-3.0, 0.0, math.nan, math.inf):
+            with pytest.raises(
+                DrystoneError, match=f"E138 --{name[:2]}.*{value} is not a positive"
+            ):
+                read_assembly(px, **{"px_per_m": 100.0, name: value})
     told = read_assembly(px, thickness_m=0.3, px_per_m=100.0)
     assert told.thickness == 0.3
     assert told.parts[0].corners == pytest.approx(one.parts[0].corners / 100)

@@ -92,6 +92,7 @@ def test_shapes_of_via(tmp_path):
     truth = [1200, np.pi * 400, np.pi * 300]
     assert [stone.area_px for stone in found] == pytest.approx(truth, rel=0.02)
     assert "1 points" in found.notices[0].message
+    assert "how large its picture is: taken as 227 x 60 px" in found.notices[1].message
 
 
 def test_shapes_of_cvat(tmp_path):

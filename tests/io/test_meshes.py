@@ -208,6 +208,25 @@ def test_a_sphere_shows_its_circle(tmp_path):
     assert codes(stones) == ["W119"] * 3
 
 
+@pytest.mark.parametrize("kind", ["ascii", "binary_little_endian", "obj"])
+def test_a_face_of_many_corners_may_be_concave(tmp_path, kind):
+    corners = np.array([(0, 0, 0), (2, 0, 0), (2, 2, 0), (1, 0.5, 0), (0, 2, 0.1)], "<f4")
+    x, y, _ = corners.T
+    area = 0.5 * float(x @ np.roll(y, -1) - y @ np.roll(x, -1))
+    if kind == "obj":  # a line that ends in a backslash goes on in the next
+        lines = ["v {} {} {}".format(*corner) for corner in corners]
+        data = "\n".join([*lines, "f 1 2 \\", "3 4 5"]).encode()
+    else:
+        data = PLY.replace(b"ascii", kind.encode()).partition(b"end_header")[0] % b"1"
+        data = data.replace(b"vertex 3", b"vertex 5") + b"end_header\n"
+        text = "\n".join(" ".join(map(str, corner)) for corner in corners) + "\n5 0 1 2 3 4\n"
+        face = b"\5" + np.arange(5, dtype="<i4").tobytes()
+        data += text.encode() if kind == "ascii" else corners.tobytes() + face
+    path = saved(tmp_path, data, "a.obj" if kind == "obj" else "a.ply")
+    (stone,) = read_stones(path, settings=ReadSettings(px_per_m=100.0))
+    assert stone.area_px == pytest.approx(area * 1e4, rel=0.003)
+
+
 def test_damaged_meshes(tmp_path):
     for data, name, text in (
         ("o a\nv 0 0 0\nv 1 0 0\nf 1 2 3\n", "a.obj", r"E114 .*line 4 .* \(a face of 3"),
@@ -215,7 +234,9 @@ def test_damaged_meshes(tmp_path):
         ("v 0 0 x\n", "a.obj", r"E114 .*line 1"),
         ("v 0 0 0\n", "a.obj", r"E114 .*no faces"),
         (b"ply\nformat binary_little_endian 1.0\nend_header\n", "a.ply", r"E1(06|14) "),
-        (PLY % b"1" + b"3 0 1 3\n", "a.ply", r"E106 .*a face of unknown vertices"),
+        (PLY % b"1" + b"3 0 1 3\n", "a.ply", r"E106 .*or of unknown vertices"),
+        (PLY % b"1" + b"2 0 1\n", "a.ply", r"E106 .*less than three corners"),
+        (PLY % b"0", "a.ply", r"E114 .*no faces"),
         (b"too short", "a.stl", r"E106 .*damaged"),
     ):
         with pytest.raises(InputError, match=text):

@@ -2,6 +2,7 @@
 
 import math
 
+import numpy as np
 import pytest
 
 from drystone.errors import UsageError
@@ -18,6 +19,8 @@ def test_halves_round_up_and_outlines_must_stay_within_the_lengths_in_source_px(
     assert Site(26, 17, 0.5).extent_px == (52.0, 34.0)
     metric = Site.from_source(51, 33.4, 0.5, px_per_m=400.0)
     assert (metric.extent_px, metric.units_per_px) == ((51, 33.4), 0.005)
+    short = Site.from_source(np.float32(270), np.int16(135), 0.5, px_per_m=np.float32(300))
+    assert {type(one) for one in (*short.extent_px, short.scale, short.px_per_m)} == {float}
 
 
 def test_sizes_and_scales_that_are_none_are_refused_with_the_cure():

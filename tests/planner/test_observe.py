@@ -131,7 +131,7 @@ def test_a_wall_that_is_built_as_planned_changes_nothing(settings):
         seen = before.wall.labels
         if settings is PIXELS:
             seen = picture(there, one.workshop.stones, 1.0)
-        for measured, least_px in ((in_metres(there), 1e-9), (seen, 0.0)):
+        for measured, least_px in ((in_metres(there), 1e-9), (seen, 0.0), (seen.tolist(), 0.0)):
             found = one.observe(measured)
             assert one.build is before
             assert max(found.largest_px, found.largest_moved_px) <= least_px
@@ -202,8 +202,10 @@ def test_deviations_are_measured_less_planned(settings):
     step = next(one.steps())
     x, y, angle = planned(one)[step.stone_id]
     aside = 1.0 if x < 125.0 else -1.0  # inwards: the wall ends there
-    seen = one.observe(in_metres({step.stone_id: (x + aside, y + 0.5, angle - 0.4)}))
+    place = (np.float64(x + aside), y + 0.5, angle - 0.4)
+    seen = one.observe(in_metres({step.stone_id: place}))
     (deviation,) = seen.deviations
+    assert {type(number) for number in vars(deviation).values()} == {int, float}
     assert (deviation.dx, deviation.dy) == pytest.approx((0.005 * aside, 0.0025))
     assert deviation.angle_deg == pytest.approx(-0.4)
     assert deviation.shift_px == pytest.approx(np.hypot(1.0, 0.5)) == seen.largest_px

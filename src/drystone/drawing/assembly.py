@@ -1,5 +1,6 @@
 """A planned wall as things to be put together: stones and wedges, and where they touch."""
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -282,8 +283,14 @@ def read_assembly(
     PlanError
         E213, E214 for ids or an order of steps that cannot be.
     UsageError
-        E131 for another scale than the plan's, or a thickness without a scale.
+        E131 for another scale than the plan's, or a thickness without a scale; E138 for a scale,
+        thickness or density that is not positive and finite.
     """
+    told = {"px-per-m": px_per_m, "thickness": thickness_m, "density": density_kg_m3}
+    for name, value in told.items():
+        if value is not None and not 0.0 < value < math.inf:
+            what = f"{value} is not a positive number."
+            raise UsageError("E138", what, where=f"--{name}", cure="Give a finite one above 0.")
     path = Path(path)
     folder = path if path.is_dir() else path.parent
     plan, polygons, model = _read(path)

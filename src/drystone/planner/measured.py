@@ -81,7 +81,7 @@ def places_of(poses: Mapping[int, MeasuredPose], site: Site) -> dict[int, Measur
                 "E197", f"stone {stone_id} is measured at {pose!r}, which is not a MeasuredPose.",
                 where="observe", cure="Give MeasuredPose(x, y, angle_deg) for each stone.",
             )  # fmt: skip
-        x, y = pose.x * px, pose.y * px
+        x, y = float(pose.x) * px, float(pose.y) * px
         # What is no number compares with nothing.
         inside = 0.0 <= x <= width and 0.0 <= y <= height
         if not inside or not math.isfinite(pose.angle_deg):
@@ -94,7 +94,7 @@ def places_of(poses: Mapping[int, MeasuredPose], site: Site) -> dict[int, Measur
                 cure="Leave out what has fallen; poses are of the wall frame, from its left end "
                 "and the ground.",
             )
-        found[stone_id] = MeasuredPlace(x, y, wrap_deg(pose.angle_deg))
+        found[int(stone_id)] = MeasuredPlace(x, y, wrap_deg(float(pose.angle_deg)))
     return found
 
 
@@ -113,8 +113,8 @@ def places_in(
     InputError: E196: the picture is not one of the wall; E195: an id is not that of a stone; E197:
     much of a stone is not to be seen, or more than there is of it.
     """
-    site = wall.site
-    scale = _scale_of(np.asarray(labels), site)
+    labels, site = np.asarray(labels), wall.site
+    scale = _scale_of(labels, site)
     planned = {p.stone_id: p for p in wall.placements}
     ids = set(np.unique(labels).tolist()) - {0} - {wedge.id for wedge in wall.wedges}
     require_known(ids, stones)

@@ -128,3 +128,5 @@ def test_a_wall_that_is_not_in_the_picture_is_refused_with_the_cure(tmp_path):
     FORMATS["projector"].files(assembly(), replace(PROJECTOR, projector_px_per_m=most))
     with pytest.raises(UsageError):
         FORMATS["projector"].files(assembly(), replace(PROJECTOR, projector_px_per_m=most + 1))
+    with pytest.raises(UsageError, match="Take a projector of more px"):
+        FORMATS["projector"].files(assembly(), replace(PROJECTOR, projector_px=(90, 90)))

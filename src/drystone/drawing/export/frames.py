@@ -163,14 +163,14 @@ def _view(assembly: Assembly, settings: ExportSettings) -> PixelView:
     left = round((wide - width) / 2)
     if min(left, wide - left - width, high - STRIP_PX - height) >= EDGE_PX:
         return PixelView(left, high - STRIP_PX, per_m)
-    fits = min((wide - 2 * EDGE_PX) / width_m, (high - STRIP_PX - EDGE_PX) / height_m)
+    fits = int(min((wide - 2 * EDGE_PX) / width_m, (high - STRIP_PX - EDGE_PX) / height_m))
+    away = f"Move the projector away: --projector {wide}x{high}@{fits} is the largest that fits."
     raise UsageError(
         "E187",
         f"a wall of {width_m:.3g} m x {height_m:.3g} m at {per_m:g} px a metre is {width:.0f} x "
         f"{height:.0f} px. With margins that is more than the projector's {wide} x {high}.",
         where="--projector",
-        cure=f"Move the projector away: --projector {wide}x{high}@{int(fits)} is the largest that "
-        "fits.",
+        cure=away if fits > 0 else "Take a projector of more px.",
     )
 
 

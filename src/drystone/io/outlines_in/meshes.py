@@ -31,6 +31,8 @@ _EDGE = 0.01
 _NEIGHBOURS = 8
 _STL_FACET = np.dtype([("normal", "<f4", (3,)), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 _STL_VERTEX = re.compile(rb"\bvertex\s+(\S+)\s+(\S+)\s+(\S+)")
+_PLY_CURE = "Copy or export it again, with faces of three corners each or as text."
+_PLY_CORNERS = ("vertex_index", "vertex_indices")
 _PLY_FACES = re.compile(rb"^element\s+face\s+(\d{1,18})", re.MULTILINE)
 
 
@@ -151,15 +153,24 @@ def _stl(data: bytes) -> Mesh:
 
 def _ply(data: bytes) -> Mesh:
     trimesh = extra("trimesh", "reads PLY", "mesh", "mesh")
-    with foreign(_cut):
-        mesh = trimesh.load_mesh(io.BytesIO(data), file_type="ply", process=False)
-        vertices, faces = np.asarray(mesh.vertices, float), np.asarray(mesh.faces, np.int64)
     said = _PLY_FACES.search(data)
-    if said and len(faces) < int(said[1]):
+    if said is None or int(said[1]) == 0:
+        raise unusable("the mesh has no faces")
+    with foreign(lambda why: damaged(why, "mesh", _PLY_CURE)):
+        mesh = trimesh.load_mesh(io.BytesIO(data), file_type="ply", process=False)
+        # As they are written: the mesh has faces of four corners and more in fans.
+        points, faces_of = (mesh.metadata["_ply_raw"][name]["data"] for name in ("vertex", "face"))
+        vertices = np.column_stack([np.asarray(points[axis], float) for axis in "xyz"])
+        names = faces_of if isinstance(faces_of, dict) else faces_of.dtype.names
+        written = faces_of[next(name for name in names if name in _PLY_CORNERS)]
+        lists = written["f1"] if written.dtype.names else written
+        faces = [np.asarray(face, np.int64) for face in lists]
+    if len(faces) < int(said[1]):
         raise _cut(f"{len(faces)} of {int(said[1])} faces")
-    if faces.size and not 0 <= faces.min() <= faces.max() < len(vertices):
-        raise _cut("a face of unknown vertices")
-    return _bodies(vertices, list(faces))
+    corners, least = np.concatenate(faces), min(map(len, faces))
+    if least < 3 or not 0 <= corners.min() <= corners.max() < len(vertices):
+        raise _cut("a face of less than three corners, or of unknown vertices")
+    return _bodies(vertices, faces)
 
 
 def _cut(why: str) -> InputError:
@@ -175,7 +186,8 @@ def _obj(data: bytes) -> Mesh:
     # By kind and name of what begins them, none before the first: faces, and all that is said.
     parts: dict[tuple[str, str], tuple[list[NDArray[np.int64]], dict[str, None]]] = {}
     part, title = ("", ""), ""
-    for number, line in enumerate(data.decode("utf-8", "replace").splitlines(), start=1):
+    text = re.sub(r"\\\r?\n", " ", data.decode("utf-8", "replace"))  # lines may go on after a \
+    for number, line in enumerate(text.splitlines(), start=1):
         words = line.split()
         try:
             if words[:1] == ["v"]:

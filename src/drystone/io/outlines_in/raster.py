@@ -94,6 +94,10 @@ def rastered(
         notices.append(notice)
     stones, (width, height) = _in_picture(file, px_per_m)
     check_size(width, height, settings.max_px, _TOO_FAR)
+    if file.unit_m is None and file.size_px is None:
+        text = f"it does not say how large its picture is: taken as {width} x {height} px."
+        cure = "y of a plan counts up from the lower end of the lowest stone."
+        notices.append(Notice("W119", text, cure))
     model.check_reach(stones, settings.max_px)
     places = [model.pixels_of(stone) for stone in stones]
     left = {} if file.seen_by == "none" else _not_stones(file, places, (width, height), settings)
