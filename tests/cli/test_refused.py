@@ -52,7 +52,7 @@ CASES = [
     ("analyse {in}/other.json", 3, "E113", "other"),
     ("analyse {in}/still.json", 3, "E303", "no free block"),
     ("measure {in}/other.json", 3, "E113", "A wall is a plan.json, a block model (blocks), a"),
-    ("measure {tower}", 2, "E134", ""),
+    ("measure {tower}", 2, "E134", "drystone analyse"),
     ("measure {finished} --background 255", 2, "E118", ""),
     ("measure {finished} --mu 1e308", 3, "E302", "mu"),
     ("check {in}/nowhere.json", 3, "E202", "nowhere"),
