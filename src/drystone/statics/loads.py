@@ -98,7 +98,7 @@ def point_load(
     most = float(np.abs(forces[row] / (mean, mean, mean * size)).max())
     if most and not 1.0 / LARGEST_FORCE <= most <= LARGEST_FORCE:
         what = f"a force on block {block}, or its moment, is {most:.1g} times the mean weight."
-        cure = f"Give 1e-7 to 1e7 times it, {mean:.3g}: forces are areas times density."
+        cure = f"Give from 1e-7 to 1e7 times {mean:.3g}, an area times density."
         raise InputError("E308", what, where="load case", cure=cure)
     return forces
 
