@@ -273,6 +273,7 @@ CODES = {
     "E305": "A package that is an extra is not installed.",
     "E306": "A load case names a block that there is not, or a support that is not fixed.",
     "E307": "A load that grows with height, and no free block lies above the ground.",
+    "E308": "A load is far too small or too large beside the weight of the blocks, or no number.",
     "E318": "Settings of the scatter that make no sense.",
     "E401": "The outcome of a run that is kept in a folder is damaged.",
     "E402": "The process that did a run died, for want of memory for example.",

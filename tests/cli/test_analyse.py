@@ -157,6 +157,11 @@ def test_noise_is_told_with_its_unit(tmp_path, tower, settled, metric, run):
     told = re.findall(r"\+- (\S+) px", run("analyse", wall, *asked, "--precision", "3%").out)
     assert list(map(float, told)) == pytest.approx([errors.outline, errors.placement], rel=0.02)
     assert run("analyse", wall, *asked, "--precision", "3").code == 2
+    # A footing is no stone.
+    footing = {"id": 1, "polygon": box(0, 0, 9, 9), "fixed": True}
+    blocks = [footing, {"id": 2, "polygon": box(4, 9, 1, 1)}]
+    footed = written(tmp_path / "footed.json", blocks=blocks)
+    assert "placement +- 0.03 lengths" in run("analyse", footed, *asked, "--precision", "3%").out
     # The model of a plan in metres is in metres, noise in px of its source.
     asked, found = ("--associative-only", "--scatter", "8", "--placement-noise", "2"), []
     for folder in (settled, metric):

@@ -136,6 +136,7 @@ CASES = [
     ("rehearse {settled} --precision 5mm,1deg", 2, "E131", "--precision"),
     ("rehearse {settled} --precision much", 2, "E138", "'much'"),
     ("rehearse {settled} --outline 1%", 2, "E138", "--outline"),
+    ("rehearse {settled} --mu 0", 2, "E138", "without friction"),
     ("rehearse {settled} -o {out}/risk.bmp", 2, "E139", ""),
     ("rehearse {finished}", 2, "E138", "only a plan on outlines"),
     # Exports.

@@ -168,6 +168,7 @@ MALFORMED = [
     {**PAIR, "friction": [7]},
     *({**PAIR, "friction": [{"between": pair, "mu": 0.3}]} for pair in ([1, 9], [1, 1], [[1], 0])),
     {**PAIR, "friction": [{"between": [1, 2], "mu": True}]},
+    {**PAIR, "friction": [{"between": [1, 2]}]},
     {**PAIR, "interfaces": [{"between": [0, 1], "points": [[0, 0]], "normal": [0, 1]}]},
     {**PAIR, "interfaces": [{"between": [1, 0], "points": [], "normal": [0, 1]}]},
     {**PAIR, "interfaces": [{"between": [1, 0], "points": [[0, 0]], "normal": [0, 0]}]},

@@ -187,6 +187,13 @@ def test_a_turned_stone_stands_on_end_beyond_45_degrees(angle, length):
         assert bool(found.cases) == (abs(angle) > 45.0)
 
 
+def test_a_triangle_stands_on_end_wherever_it_is_drawn():
+    """Its three smallest rectangles are equal: the least elongated one counts."""
+    triangle = np.array([[0.0, 0.0], [2.0, 0.0], [0.0, 5.0]])
+    for loop in (triangle, triangle * 1e3, triangle * 1e20, triangle + 1e7, [5, 0] - triangle):
+        assert find("on_end", Masonry({1: loop})).cases[0].value == pytest.approx(2.5, rel=1e-6)
+
+
 def test_a_big_stone_above_mid_height_is_named():
     loops = courses([[2.0] * 4, [2.0] * 4]) | {20: box(0, 2, 4, 2), 21: box(4, 2, 2, 1)}
     found = find("big_low", Masonry(loops))

@@ -325,6 +325,19 @@ def test_only_a_fixed_block_can_settle():
         point_load(tower, 7, (0, 0), (1, 0))
 
 
+def test_a_force_that_solvers_would_leave_out_or_drown_in_is_refused():
+    """Under one of 1e-9 mean weights nothing limited the load; not a number had no end."""
+    block, dead = boxes([0, 0, 1000, 3000]), weight(boxes([0, 0, 1000, 3000]))
+    for most in (1e-7, 1e7):
+        live = point_load(block, 1, (500, 1500), (3e6 * most, 0))
+        assert limit_load(block, "right", Loads(dead, live)).alpha * most == pytest.approx(1 / 3)
+    for force in (1e-3, 1e14):
+        with pytest.raises(InputError, match=r"E308.*times the mean weight"):
+            point_load(block, 1, (500, 1500), (force, 0))
+    with pytest.raises(InputError, match=r"E308.*finite"):
+        Loads(dead, dead * np.nan)
+
+
 def test_no_alpha_may_hold_a_wall_up():
     model = boxes([0, 0, 20, 20], [12, 20, 20, 20], mu=0.9)
     # Less weight does not hold it up before the stone is pulled off: it takes all of its weight.

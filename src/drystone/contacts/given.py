@@ -375,8 +375,10 @@ def with_pair_friction(
     """Give all interfaces of pairs of ids, in either order, the friction that a file names."""
     friction = {}
     for place, entry in enumerate(entries):
-        pair = _between(entry, ids, f"friction, entry {place + 1}")
-        friction[frozenset(pair)] = read_mu(entry, "mu", 0.58)
+        pair = _between(entry, ids, where := f"friction, entry {place + 1}")
+        if "mu" not in entry:
+            raise bad("it has no 'mu'.", where, "Give the friction of this pair.")
+        friction[frozenset(pair)] = read_mu(entry, "mu", 0.0)
     faces = (
         replace(face, mu=friction.get(frozenset((face.block, face.other)), face.mu))
         for face in model.interfaces

@@ -33,15 +33,13 @@ def on_end(masonry: Masonry) -> Evidence:
     cases = []
     longer = 0
     for stone, loop in masonry.stones.items():
-        around = shapely.oriented_envelope(shapely.MultiPoint(loop))
-        corners = shapely.get_coordinates(around)[:4]
-        one, other = corners[1] - corners[0], corners[2] - corners[1]
+        middle, one, other = _smallest_rectangle(loop)
         sides = float(np.hypot(*one)), float(np.hypot(*other))
         elongation = max(sides) / min(sides)
         if elongation < masonry.settings.elongation - 1e-9:
             continue
         longer += 1
-        along, middle = one if sides[0] >= sides[1] else other, corners.mean(axis=0)
+        along = one if sides[0] >= sides[1] else other
         axis = np.array([middle - 0.4 * along, middle + 0.4 * along])
         dx, dy = np.abs(axis[1] - axis[0]).tolist()
         if dy > dx * (1.0 + 1e-9):
@@ -49,6 +47,24 @@ def on_end(masonry: Masonry) -> Evidence:
             cases.append(Case((stone,), round(elongation, 6), words, (axis,)))
     number = len(cases) / len(masonry.stones)
     return Evidence(number, worst_first(cases), {"stones with a longer side": float(longer)})
+
+
+def _smallest_rectangle(loop: Line) -> tuple[Line, Line, Line]:
+    """Return the middle of the smallest rectangle around corners, (n, 2), and two of its sides.
+
+    Of equally small ones, as a triangle has, it is the least elongated; that of GEOS goes by
+    rounding, and is wrong far from the origin.
+    """
+    corners = shapely.get_coordinates(shapely.convex_hull(shapely.MultiPoint(loop - loop[0])))
+    along = np.diff(corners, axis=0) / np.hypot(*np.diff(corners, axis=0).T)[:, None]
+    axes = np.stack((along, along[:, ::-1] * (-1.0, 1.0)))
+    at = axes @ corners.T  # (2, edges, corners)
+    sides, area = np.ptp(at, axis=2), np.ptp(at, axis=2).prod(axis=0)
+    elongation = sides.max(axis=0) / sides.min(axis=0)
+    best = np.where(area <= (1.0 + 1e-9) * area.min(), elongation, np.inf).argmin()
+    middle = (at.min(axis=2) + sides / 2.0)[:, best] @ axes[:, best]
+    one, other = axes[:, best] * sides[:, best, None]
+    return loop[0] + middle, one, other
 
 
 def big_low(masonry: Masonry) -> Evidence:

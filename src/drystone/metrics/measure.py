@@ -74,7 +74,7 @@ def measure_labels(
         Area of the stones when it is known better than from the pixels, as in plans: nearest
         sampling changes a mask by up to 3.5 %, and a search would pick the larger ones.
     lateral_resistance : float, optional
-        F_LR of the wall (:attr:`drystone.statics.model.LateralResistance.value`); statics of a
+        F_LR of the wall (:attr:`drystone.statics.result.LateralResistance.value`); statics of a
         plan comes from outlines, which are not in the image.
 
     Raises

@@ -7,7 +7,7 @@ add up: ``Loads(weight(model) + point_load(model, 7, (3, 2), (0, -5)), live)``.
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from math import cos, isfinite, radians, sin
+from math import cos, isfinite, radians, sin, sqrt
 
 import numpy as np
 
@@ -17,6 +17,9 @@ from drystone.statics.result import Floats
 
 LISTED = 8
 """So many blocks are named."""
+
+LARGEST_FORCE = 1e7
+"""In mean weights, and its inverse is the smallest: solvers leave out numbers below 1e-9."""
 
 _NUMBER = r"([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)"
 _POINT_LOAD = re.compile(rf"(\d+)@{_NUMBER},{_NUMBER}:{_NUMBER},{_NUMBER}")
@@ -34,6 +37,11 @@ class Loads:
     dead: Floats
     live: Floats
     name: str = "loads"
+
+    def __post_init__(self) -> None:
+        if not np.isfinite([self.dead, self.live]).all():
+            what = "a load is not a finite number."
+            raise InputError("E308", what, where="loads", cure="Correct it.")
 
 
 def weight(model: RigidBlockModel, angle_deg: float = 0.0) -> Floats:
@@ -78,12 +86,20 @@ def point_load(
     """Return a force on the block of an id at a point, (n, 3), to add to dead or live loads.
 
     The force is to the right and up, in weights of the model (area times density); the point is in
-    the wall frame.  A block that is not there is an InputError (E306).
+    the wall frame.  A block that is not there is an InputError (E306), and so is a force or its
+    moment that is far too small or too large beside the weight of a free block (E308).
     """
     row, found = _block(model, block)
     arm_x, arm_y = point[0] - found.centroid[0], point[1] - found.centroid[1]
     forces = np.zeros((len(model.blocks), 3))
     forces[row] = (*force, arm_x * force[1] - arm_y * force[0])
+    free = [other for other in model.blocks if not other.fixed] or [found]
+    mean, size = np.mean([(one.weight, sqrt(one.area)) for one in free], axis=0).tolist()
+    most = float(np.abs(forces[row] / (mean, mean, mean * size)).max())
+    if most and not 1.0 / LARGEST_FORCE <= most <= LARGEST_FORCE:
+        what = f"a force on block {block}, or its moment, is {most:.1g} times the mean weight."
+        cure = f"Give from 1e-7 to 1e7 times {mean:.3g}, an area times density."
+        raise InputError("E308", what, where="load case", cure=cure)
     return forces
 
 

@@ -187,7 +187,8 @@ def _scatter_of(
     """Shake the wall and analyse it each time; draw the distribution into the folder."""
     unit = analysis.noise_unit(given)
     lengths = unit[1]
-    areas = (b.area for b in wall.model.blocks if b.id not in given.wedge_ids)
+    # What is fixed, such as a footing, is no stone.
+    areas = (b.area for b in wall.model.blocks if not (b.fixed or b.id in given.wedge_ids))
     size = float(np.mean(np.sqrt(list(areas))))
     errors = BuilderErrors.of_precision(arguments.precision or 0.0, size)
     settings = ScatterSettings(

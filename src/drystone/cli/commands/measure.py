@@ -43,7 +43,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
             cure = "Leave it out, or give --wall in metres, as in 1.4mx0.4m."
             raise UsageError("E138", what, where=numbers.option_of(arguments.px_per_m), cure=cure)
     if wall.labels is None:
-        cure = "Use `drystone analyse` for its load multipliers, or give the plan beside it."
+        cure = "Use `drystone analyse` or `drystone craft`, or give the plan that it stands beside."
         raise UsageError("E134", "a block model has no pixels.", where="measure", cure=cure)
     numbers.refuse_outside(arguments.px_per_m, numbers.wall_picture_px(wall))
     # Of the picture as it was given: reducing it may part what hangs together.

@@ -74,6 +74,9 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     closed = arguments.closed_loop
     once = rehearse_closed if closed else rehearse_in_engine if arguments.physics else rehearse
     least, most = arguments.mu or (wall.mu, wall.mu)
+    if min(most, wall.mu) == 0.0:
+        cure = "Give a coefficient of friction above 0."
+        raise UsageError("E138", "without friction no stone rests.", where="--mu", cure=cure)
     planned = once(groups, NOTHING, np.random.default_rng(0), mu=wall.mu)
     found = []
     with counting_bar("walls", arguments.runs, quiet=arguments.json) as on_run:
