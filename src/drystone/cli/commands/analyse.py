@@ -121,10 +121,12 @@ def run(arguments: argparse.Namespace) -> ExitCode:
         resistance = lateral_resistance(model, loads, mechanism=True, solver=solver)
         swept = wall.sweep is not None
         note(None if resistance.stable else unsupported(model, given, swept=swept))
-        card = analysis.analysis_of(
-            wall, loads, resistance, sha256, associative_only=arguments.associative_only,
-            solver=solver,
-        )  # fmt: skip
+        said = "without dilatancy (skip: --associative-only)"
+        with busy(said, quiet=arguments.json, after_s=2.0):
+            card = analysis.analysis_of(
+                wall, loads, resistance, sha256, associative_only=arguments.associative_only,
+                solver=solver,
+            )  # fmt: skip
     if folder is not None:
         from drystone.drawing.report.analysis import write_analysis  # noqa: PLC0415 - slow import
 
