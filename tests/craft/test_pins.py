@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from drystone.contacts.blocks import model_from_labels
 from drystone.contacts.given import model_from_json
 from drystone.craft import Masonry, pins
 from drystone.statics.limit import lateral_resistance
@@ -12,6 +13,8 @@ from drystone.statics.lp.highs import HighsSession
 from drystone.statics.lp.program import Solution
 from drystone.statics.result import LimitStatus
 from tests.craft.walls import box, find, mirrored
+from tests.naive import statics as naive
+from tests.statics.walls import coursed, irregular
 
 
 def modelled(loops, wedges):
@@ -132,6 +135,15 @@ def test_pressure_in_upright_joints_does_not_hold_a_stone_up():
     found = find("pins", modelled(loops, {9}))
     assert found.note == "The wall stands only by pressure in upright joints, which was counted on."
     assert found.number is not None
+
+
+@pytest.mark.parametrize("labels", [coursed(1, 4, 80), irregular(3, 14, 80, 60), coursed(2, 6, 60)])
+def test_least_loads_are_those_of_programs_from_the_start(labels):
+    model = model_from_labels(labels).model
+    loads = pins.least_wedge_loads(model, frozenset(block.id for block in model.blocks))
+    mean = np.mean([block.weight for block in model.blocks])
+    assert sum(load > 0.1 * mean for load in loads.values()) > 1
+    assert loads == pytest.approx(naive.least_wedge_loads(model), abs=1e-6 * mean)
 
 
 def test_a_wedge_that_friction_may_pull_down_carries_nothing():

@@ -4,6 +4,8 @@ import numpy as np
 from scipy.optimize import linprog
 from scipy.sparse import csc_array
 
+from drystone.statics.model import GROUND
+
 
 def diagonal_touches(labels):
     """(larger id, smaller id, x, y) where two labels touch across two empty pixels."""
@@ -67,3 +69,25 @@ def alphas_by_linprog(model):
         ends.append(-answer.fun)
     # No load at all is the load 0.
     return (ends[0], ends[1]) if min(ends) >= -1e-9 else None
+
+
+def least_wedge_loads(model):
+    """What each block has to bear from above at least, from the start; none bears less than 0."""
+    normal, tangent = contact_matrices(model)
+    faces = [face for face in model.interfaces for _ in face.points]
+    mu = np.array([model.friction(face) for face in faces])
+    edges = np.stack((normal + mu * tangent, normal - mu * tangent), axis=2)
+    matrix = np.column_stack((edges.reshape(len(edges), -1), np.zeros(len(edges))))
+    dead = np.zeros(len(matrix))
+    dead[1::3] = [block.weight for block in model.blocks]
+    loads = {}
+    for block in model.blocks:
+        pressed = []
+        for face, rough in zip(faces, mu, strict=True):
+            (x, y), under = face.normal, {face.block: -1.0, face.other: 1.0}.get(block.id, 0.0)
+            counts = under if under * y > 0 and GROUND not in (face.block, face.other) else 0.0
+            pressed += [counts * (y - rough * x), counts * (y + rough * x)]
+        last = [0.0] * len(pressed) + [1.0]
+        answer = linprog(last, A_ub=[[*pressed, -1.0]], b_ub=[0.0], A_eq=matrix, b_eq=dead)
+        loads[block.id] = answer.fun
+    return loads
