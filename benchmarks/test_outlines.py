@@ -6,12 +6,12 @@ from tests.naive import coverage as naive_coverage
 from tests.naive import crevice as naive_crevice
 from tests.naive import drops as naive_drops
 from tests.naive import meetings as naive_meetings
-from tests.naive import putting as naive_putting
+from tests.naive.as_built import SlowWall
 
 from benchmarks.conftest import Row, Timer
 from benchmarks.outlines import CELL, OutlineScene, outline_scene
 from benchmarks.scenes import Stock
-from drystone.kernels import putting
+from drystone.kernels.as_built import BuiltWall
 from drystone.kernels.coverage import coverage
 from drystone.kernels.crevice import crevice
 from drystone.kernels.drops import Wanted, drops
@@ -19,7 +19,7 @@ from drystone.kernels.meetings import meetings
 from drystone.kernels.polygons import Points
 from drystone.kernels.profiles import HeightProfile, bare, extremes, in_a_row, raised
 from drystone.model.builder import as_planned
-from drystone.settle.putting import put_down as put_down_built
+from drystone.settle.putting import bare_wall
 
 SHARES = "share of every pixel that an outline covers"
 PROFILE = "lowest and highest point of an outline over every column"
@@ -180,23 +180,22 @@ def test_crevice_slowly(timer: Timer, wall: OutlineScene, resting: list[Points])
     timer.times(1, row(wall, CREVICE, len(resting), "an upright line each px"), call)
 
 
-def put_down(wall: OutlineScene, resting: list[Points]) -> None:
+def put_down(built: BuiltWall | SlowWall, resting: list[Points]) -> None:
     """Put stones down a little aside of where they came to rest."""
     for corners in resting:
-        built = as_planned(corners + np.array((4.0 * CELL, 0.0)))
-        put_down_built(built, wall.polygons, 0.58, wall.settings)
+        built.put([(-1, as_planned(corners + np.array((4.0 * CELL, 0.0))))])
 
 
 def test_put_down(timer: Timer, wall: OutlineScene, resting: list[Points]) -> None:
     """Press stones in between their neighbours, and let them go."""
-    timer.times(ROUNDS, row(wall, PUT, len(resting)), lambda: put_down(wall, resting))
+    built = bare_wall(0.58, wall.settings).held(dict(enumerate(map(as_planned, wall.outlines))))
+    timer.times(ROUNDS, row(wall, PUT, len(resting)), lambda: put_down(built, resting))
 
 
 @pytest.mark.slow
-def test_put_down_slowly(
-    timer: Timer, wall: OutlineScene, resting: list[Points], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_put_down_slowly(timer: Timer, wall: OutlineScene, resting: list[Points]) -> None:
     """The same lift by lift, and line by line beside each other."""
-    monkeypatch.setattr(putting, "put_down", naive_putting.put_down)
+    how = bare_wall(0.58, wall.settings).how
+    built = SlowWall(0.58, how, enumerate(map(as_planned, wall.outlines)))
     twin = "Shapely, lift by lift"
-    timer.times(1, row(wall, PUT, len(resting), twin), lambda: put_down(wall, resting))
+    timer.times(1, row(wall, PUT, len(resting), twin), lambda: put_down(built, resting))

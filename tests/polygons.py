@@ -4,8 +4,7 @@ import numpy as np
 import shapely
 from hypothesis import strategies as st
 
-from drystone.kernels.polygons import area_and_centroid
-from drystone.kernels.raster import turn
+from drystone.kernels.polygons import area_and_centroid, turn
 
 
 def random_polygon(rng, corners, size):

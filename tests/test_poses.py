@@ -12,16 +12,9 @@ from hypothesis import strategies as st
 
 from drystone.errors import UsageError
 from drystone.indices import shape_factor
-from drystone.kernels.raster import quantise, rotation
+from drystone.kernels.raster import quantise, rotation, wrap_deg
 from drystone.model.stone import Stone
-from drystone.poses import (
-    PoseBook,
-    RecentlyUsed,
-    initial_angle_deg,
-    orientation_step_deg,
-    pose_at,
-    wrap_deg,
-)
+from drystone.poses import PoseBook, RecentlyUsed, initial_angle_deg, orientation_step_deg, pose_at
 from tests.naive import indices
 from tests.naive import raster as naive
 from tests.strategies import blobs, masks, repeatable

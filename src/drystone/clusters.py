@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.cluster.hierarchy import fcluster, ward
 
-from drystone.kernels.raster import turn
+from drystone.kernels.polygons import turn
 from drystone.model.settings import Ranged, ranged
 from drystone.model.stone import StoneSet
 from drystone.poses import PoseBook

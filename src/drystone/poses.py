@@ -9,7 +9,14 @@ from typing import Generic, TypeVar
 import numpy as np
 
 from drystone.errors import UsageError
-from drystone.kernels.raster import quantise, rasterise, rasterise_to_area, rotation, turned_boxes
+from drystone.kernels.raster import (
+    quantise,
+    rasterise,
+    rasterise_to_area,
+    rotation,
+    turned_boxes,
+    wrap_deg,
+)
 from drystone.model.pose import PosedStone
 from drystone.model.stone import Stone
 
@@ -50,11 +57,6 @@ def lying_angle_deg(stone: Stone) -> float:
         return top - bottom, -bottom, -left, np.rot90(stone.mask, quarter).tobytes()
 
     return wrap_deg(first + 90.0 * min(range(4), key=rank))
-
-
-def wrap_deg(angle_deg: float) -> float:
-    """Bring an angle into [-180, 180)."""
-    return (angle_deg + 180.0) % 360.0 - 180.0
 
 
 def orientation_step_deg(orientations: str) -> float | None:

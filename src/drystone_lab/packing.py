@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from drystone.errors import extra
-from drystone.kernels.raster import turn
+from drystone.kernels.polygons import turn
 from drystone.model.stone import StoneSet
 from drystone.poses import PoseBook
 from drystone_lab.planned_walls import missing_data

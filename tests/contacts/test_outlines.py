@@ -15,8 +15,7 @@ from skimage import measure
 from drystone.contacts.outlines import model_of_traced, outlines_of_labels
 from drystone.contacts.settled import PlacedPolygons, model_of_outlines, model_with_outlines
 from drystone.io.read_stones import read_stones
-from drystone.kernels.polygons import area_and_centroid
-from drystone.kernels.raster import turn
+from drystone.kernels.polygons import area_and_centroid, turn
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import GROUND, Block, Interface, RigidBlockModel
 from drystone_lab.pixels import tilted_wall

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from drystone.craft import CraftSettings, Masonry
 from drystone.craft.bond import bond_faults
-from drystone.kernels.raster import turn
+from drystone.kernels.polygons import turn
 from drystone.metrics.frame import frame_wall
 from drystone.metrics.shape import flush_deviation, level_deviation
 from tests.craft.walls import (

@@ -21,8 +21,7 @@ from drystone.kernels.course_types import (
     Weights,
 )
 from drystone.kernels.courses import anneal, evaluate, ways_up
-from drystone.kernels.polygons import area_and_centroid
-from drystone.kernels.raster import turn
+from drystone.kernels.polygons import area_and_centroid, turn
 from drystone.metrics import measure, paths
 from drystone.search.course_task import poses_of
 from tests.naive.courses import all_terms, annealed

@@ -7,8 +7,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from drystone.kernels.meetings import meetings
-from drystone.kernels.polygons import no_polygons
-from drystone.kernels.raster import turn
+from drystone.kernels.polygons import no_polygons, turn
 from tests.polygons import box_of, simple_polygons
 from tests.strategies import repeatable
 

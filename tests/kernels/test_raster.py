@@ -9,13 +9,13 @@ from hypothesis import strategies as st
 
 from drystone.kernels import raster
 from drystone.kernels.backend import compiled
+from drystone.kernels.polygons import turn
 from drystone.kernels.raster import (
     PHASE_STEPS,
     quantise,
     rasterise,
     rasterise_to_area,
     rotation,
-    turn,
     turned_boxes,
 )
 from tests.kernels.twins import both_ways

@@ -8,8 +8,7 @@ from hypothesis import strategies as st
 
 from drystone.io.read_stones import read_stones
 from drystone.kernels.outline import pixel_polygon
-from drystone.kernels.polygons import area_and_centroid
-from drystone.kernels.raster import turn
+from drystone.kernels.polygons import area_and_centroid, turn
 from drystone.model.outline import _contour, _mended, reach_px, second_moments, solid, stone_outline
 from drystone.model.stone import OUTLINE_TOLERANCE_PX, Stone
 from tests.naive import outline as naive

@@ -6,7 +6,7 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drystone.kernels.raster import turn
+from drystone.kernels.polygons import turn
 from drystone.model.overlap import CIRCLE, common_parts, deepest_overlap, overlap_depth, shape_of
 from tests.naive import overlap as naive
 from tests.polygons import box_of, simple_polygons

@@ -3,8 +3,7 @@
 import numpy as np
 
 from drystone.model.builder import as_planned, stratified
-from drystone.settle.as_built import BuiltWall
-from drystone.settle.putting import astray
+from drystone.settle.putting import astray, bare_wall
 
 
 def falls(steps, errors, trial, mu, settle):
@@ -12,7 +11,7 @@ def falls(steps, errors, trial, mu, settle):
 
     Steps are blocks, ids and corners as planned, of a stone and its wedges.
     """
-    wall, fallen = BuiltWall(mu, settle), []
+    wall, fallen = bare_wall(mu, settle), []
     for (stone, corners), *wedges in steps:
         drawn = stratified(np.random.default_rng([7, stone]), settle.trials, 1 + len(wedges))[trial]
         put = [(stone, *errors.all_built(corners, drawn[:1]))]

@@ -9,8 +9,8 @@ import pytest
 import shapely
 
 from drystone import Planner, Site, lateral_resistance
+from drystone.kernels.polygons import turn
 from drystone.kernels.profiles import hanging
-from drystone.kernels.raster import turn
 from drystone.planner.evaluate import Evaluator, Loaded
 from drystone.planner.search_settings import LayingSettings
 from drystone.planner.seats import Seats

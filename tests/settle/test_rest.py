@@ -15,9 +15,9 @@ from drystone.kernels.polygons import (
     no_polygons,
     on_grid,
     polygon_edges,
+    turn,
 )
 from drystone.kernels.profiles import hanging
-from drystone.kernels.raster import turn
 from drystone.kernels.settling import Status, settle
 from drystone.model.outline import stone_outline
 from drystone.model.stone import Stone

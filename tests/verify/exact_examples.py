@@ -7,8 +7,7 @@ import numpy as np
 
 from drystone.contacts.settled import model_of_outlines
 from drystone.io.plan_folder import blocks_to_json
-from drystone.kernels.polygons import on_grid
-from drystone.kernels.raster import turn
+from drystone.kernels.polygons import on_grid, turn
 from drystone.model.placement import Settled
 from drystone.model.site import Site
 from drystone.model.wall import Wall

@@ -7,7 +7,7 @@ import pytest
 import shapely
 
 from drystone.errors import PlanError
-from drystone.kernels.raster import turn
+from drystone.kernels.polygons import turn
 from drystone.verify.outlines import common_areas, plan_polygons
 from tests.polygons import box_of
 from tests.verify.exact_examples import exact_example

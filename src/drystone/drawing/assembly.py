@@ -16,8 +16,7 @@ from drystone.drawing.outlines import label_regions, wall_outlines
 from drystone.errors import InputError, PlanError, UsageError
 from drystone.io.photo_beside import photo_beside
 from drystone.io.walls import read_wall
-from drystone.kernels.polygons import Points, area_and_centroid
-from drystone.kernels.raster import turn
+from drystone.kernels.polygons import Points, area_and_centroid, turn
 from drystone.model.frames3d import Pose3d, photo_pose, wall_pose
 from drystone.model.plan import Plan, Point, StoneStep, WedgeStep
 from drystone.model.steps import first_fault, piece_id

@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from drystone.kernels.boundary import boundary_of
-from drystone.kernels.polygons import area_and_centroid
-from drystone.kernels.raster import Mask, turn
+from drystone.kernels.polygons import area_and_centroid, turn
+from drystone.kernels.raster import Mask
 from drystone.model.wall import Labels, Wall
 
 Loop = NDArray[np.float64]

@@ -26,7 +26,7 @@ from drystone.drawing.drawing import (
 )
 from drystone.drawing.lettering import one_line
 from drystone.drawing.outlines import Loop
-from drystone.kernels.raster import turn
+from drystone.kernels.polygons import turn
 from drystone.model.plan import Point
 
 LAYERS = (

@@ -14,8 +14,7 @@ from drystone.generate.layout import (
     stones_of,
     whole_mask,
 )
-from drystone.kernels.polygons import Points
-from drystone.kernels.raster import turn
+from drystone.kernels.polygons import Points, turn
 from drystone.model.stone import StoneSet
 
 LOOSE_COURSE = 0.08

@@ -106,6 +106,7 @@ class MovingStone(Body):
     def __init__(self) -> None:
         self.room = self.near_room = 64
         self.gaps, self.near = new_doubles(7 * self.room), new_ints(self.near_room)
+        self.spans = new_doubles(2 * self.near_room)
         self.row_room = 32
         self.rows = new_doubles(4 * self.row_room)
         self.scratch = new_doubles(3 * (self.row_room + 2))
@@ -113,6 +114,7 @@ class MovingStone(Body):
     def __dealloc__(self) -> None:
         release(self.gaps)
         release(self.near)
+        release(self.spans)
         release(self.rows)
         release(self.scratch)
 
@@ -199,9 +201,10 @@ def keep(stone, gap, nx, ny, x, y, away, other):
 
 
 def room_for(stone, count):
-    """Make room for the numbers of edges that are near."""
+    """Make room for the numbers of edges that are near, and from where to where they reach."""
     if count > stone.near_room:
         stone.near = more_ints(stone.near, 2 * count)
+        stone.spans = more_doubles(stone.spans, 4 * count)
         stone.near_room = 2 * count
     return 0
 
@@ -218,11 +221,20 @@ def one_way(a, b, out, reach, corner, sign, other):
     ca: cython.p_double = a.corners
     cb: cython.p_double = b.corners
     edges: cython.p_double = b.edges
+    spans: cython.p_double
+    beside: cython.double = FARTHER * reach
+    # Edges are far from most corners along the longer side of where both polygons are.
+    axis: cython.Py_ssize_t = 0 if right - left > high - low else 1
     if left > right or low > high:
         return 0
     room_for(out, b.count)
+    spans = out.spans
     for i in range(b.count):
         if meets(b, i, left, low, right, high):
+            start = cb[2 * (b.first + i) + axis]
+            end = cb[2 * (b.first + i + 1 if i + 1 < b.count else b.first) + axis]
+            spans[2 * near] = min(start, end) - beside
+            spans[2 * near + 1] = max(start, end) + beside
             out.near[near] = b.first + i
             near += 1
     if not near:
@@ -232,7 +244,10 @@ def one_way(a, b, out, reach, corner, sign, other):
         if vx < left or vx > right or vy < low or vy > high:
             continue
         inside, deep = -1, 0.0
+        place = vy if axis else vx
         for j in range(near):
+            if spans[2 * j] > place or spans[2 * j + 1] < place:
+                continue
             e = out.near[j]
             dx, dy = vx - cb[2 * e], vy - cb[2 * e + 1]
             # The outward normal of an edge along u is (u_y, -u_x); edges without length have none.
@@ -244,7 +259,7 @@ def one_way(a, b, out, reach, corner, sign, other):
                 continue
             if t < 0.0:
                 # A corner farther before an edge than `reach` has no gap to the edge's start.
-                if t >= -FARTHER * reach and at_corner(a, b, i, e, reach, corner, sign, other, out):
+                if t >= -beside and at_corner(a, b, i, e, reach, corner, sign, other, out):
                     inside = 3
                 continue
             if s >= -SAME:

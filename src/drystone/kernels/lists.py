@@ -62,6 +62,7 @@ def move_ints(to: list[Any], at: int, source: list[Any], start: int, count: int)
     to[at : at + count] = source[start : start + count]
 
 
+move_doubles = move_ints
 new_ints = new_longs = new_doubles
 kept_ints = kept_longs = kept_flags = kept_doubles
 more_ints = more_longs = more_doubles

@@ -18,8 +18,12 @@ cdef class MeetingRows:
     cdef Py_ssize_t count, room
 
 
+cdef object find_meetings(
+    const double *at, Py_ssize_t corners, const double *others, const int *first,
+    const double *boxes, Py_ssize_t count, double near, double back
+)
 cdef object _told(MeetingRows found)
-cdef void set_sides(Sides sides, double *corners, Py_ssize_t first) noexcept nogil
+cdef void set_sides(Sides sides, const double *corners, Py_ssize_t first) noexcept nogil
 cdef int meet(
     Sides p, Sides q, Py_ssize_t other, double tolerance, double by, MeetingRows found
 ) except -1 nogil

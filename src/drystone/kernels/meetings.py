@@ -123,23 +123,24 @@ def meetings(corners: Points, around: Polygons, tolerance: float, setback: float
         raise ValueError("the tolerance must be above 0")
     if not setback >= 0.0:
         raise ValueError("the set-back must not be below 0")
-    first: cython.p_int = ints(around.first)
-    count: cython.Py_ssize_t = len(around)
+    return find_meetings(
+        doubles(corners), len(corners), doubles(around.corners), ints(around.first),
+        doubles(around.boxes), len(around), tolerance, setback,
+    )  # fmt: skip
+
+
+def find_meetings(at, corners, others, first, boxes, count, near, back):
+    """Find the contacts of a polygon with the ground and with the first so many others."""
+    found: MeetingRows = MeetingRows(4 * corners + 16)
     most: cython.Py_ssize_t = 4
     for k in range(count):
         most = max(most, first[k + 1] - first[k])
-    mine: Sides = Sides(len(corners))
+    mine: Sides = Sides(corners)
     theirs: Sides = Sides(most)
-    found: MeetingRows = MeetingRows(4 * len(corners) + 16)
-    at: cython.p_double = doubles(corners)
-    others: cython.p_double = doubles(around.corners)
-    boxes: cython.p_double = doubles(around.boxes)
-    near: cython.double = tolerance
-    back: cython.double = setback
-    reach: cython.double = BESIDE * tolerance
-    beyond: cython.double = 1.0 + 4.0 * tolerance
+    reach: cython.double = BESIDE * near
+    beyond: cython.double = 1.0 + 4.0 * near
     ground: cython.double[8] = [0.0, -beyond, 0.0, -beyond, 0.0, 0.0, 0.0, 0.0]
-    mine.count = len(corners)
+    mine.count = corners
     with cython.nogil:
         set_sides(mine, at, 0)
         if mine.low - reach <= 0.0:

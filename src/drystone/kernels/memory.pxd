@@ -90,3 +90,8 @@ cdef inline void move_ints(
     int *to, Py_ssize_t at, const int *source, Py_ssize_t start, Py_ssize_t count
 ) noexcept nogil:
     memmove(to + at, source + start, count * sizeof(int))
+
+cdef inline void move_doubles(
+    double *to, Py_ssize_t at, const double *source, Py_ssize_t start, Py_ssize_t count
+) noexcept nogil:
+    memmove(to + at, source + start, count * sizeof(double))

@@ -9,6 +9,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from drystone.kernels.raster import rotation
+
 try:
     import cython
 except ImportError:
@@ -91,6 +93,21 @@ def on_grid(points: Points) -> Points:
 def place_on_grid(x: float, y: float) -> tuple[float, float]:
     """Return the nearest place whose coordinates are multiples of 2^-20."""
     return floor(x * GRID + 0.5) / GRID, floor(y * GRID + 0.5) / GRID
+
+
+def turn(points: Points, angle_deg: float) -> Points:
+    """Turn points (n, 2), y up, counter-clockwise about the origin."""
+    points = np.ascontiguousarray(points, np.float64)
+    turned = np.empty_like(points)
+    count: cython.Py_ssize_t = len(points)
+    at: cython.p_double = doubles(points)
+    to: cython.p_double = doubles_out(turned)
+    c: cython.double
+    s: cython.double
+    c, s = rotation(angle_deg)
+    for i in range(0, 2 * count, 2):
+        to[i], to[i + 1] = at[i] * c - at[i + 1] * s, at[i + 1] * c + at[i] * s
+    return turned
 
 
 def no_polygons() -> Polygons:

@@ -1,11 +1,12 @@
-from drystone.kernels.gaps cimport Body, Heap, MovingStone, heap_of, measure, over, select
-from drystone.kernels.memory cimport doubles, kept_doubles, p_double
+from drystone.kernels.gaps cimport Body, Heap, MovingStone, measure, over, select
+from drystone.kernels.memory cimport kept_doubles, move_doubles, p_double
 from drystone.kernels.profiles cimport sweep_all
-from drystone.kernels.settling cimport Way, let_go, settling_of, way_of
+from drystone.kernels.settling cimport Way, let_go
 
 
 cdef class Press:
     cdef list room
+    cdef dict pushed  # by how much which others were pushed along x
     cdef Way block
     cdef MovingStone one
     cdef Heap heap
@@ -13,7 +14,8 @@ cdef class Press:
     cdef double bottom, top, most, gap
 
 
-cdef Press press_of(Way way, object around, object lying)
+cdef int put_down(Press press, double x, double start_y, list lifts) except -1
+cdef Press press_of(Way way, Heap heap, double most, double gap)
 cdef int lie(Press press, dict before, dict now) except -1
 cdef void move(Press press, Py_ssize_t i, double shift) noexcept
 cdef tuple squeezed_in(Press press, double x, double y)

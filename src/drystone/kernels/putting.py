@@ -7,23 +7,19 @@ friction lets it: it rolls about what carries it, and slides only where it does 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
-from drystone.kernels.polygons import Points, Polygons
-from drystone.kernels.settling import Settling, SettlingRules
-
 try:
     import cython
 except ImportError:
     from drystone.kernels import shim as cython
 
 if not cython.compiled:
-    from drystone.kernels.gaps import Heap, MovingStone, heap_of, measure, over, select
-    from drystone.kernels.lists import doubles, kept_doubles
+    from drystone.kernels.gaps import Heap, MovingStone, measure, over, select
+    from drystone.kernels.lists import kept_doubles, move_doubles
     from drystone.kernels.profiles import sweep_all
-    from drystone.kernels.settling import Way, let_go, settling_of, way_of
+    from drystone.kernels.settling import Way, let_go
 
 RESTS = cython.declare(cython.int, 0)
+FALLS = cython.declare(cython.int, 1)
 OVERLAPS = cython.declare(cython.int, 2)
 
 # Two polygons lie beside each other when they share so much of the height of the lower one.
@@ -33,29 +29,14 @@ BESIDE = cython.declare(cython.double, 0.3)
 LINES = cython.declare(cython.Py_ssize_t, 32)
 
 
-def put_down(
-    outline: Points,
-    edges: Points,
-    at: tuple[float, float],
-    around: Polygons,
-    rules: SettlingRules,
-    lifts: Sequence[float],
-    most: float,
-    gap: float,
-) -> tuple[Settling | None, dict[int, float] | None]:
-    """Return where a block comes to rest, and by how much which others are pushed along x.
+def put_down(press, x, start_y, lifts):
+    """Let a block come to rest, lifted by the least of some ways with which it does.
 
-    Corners of the outline are relative to the centroid, which is put at a place, and lifted by the
-    least of some ways with which it rests; None where it does with none.  It is moved and pushed by
-    no more than `most`, and what overlapped it keeps a gap.  Nor are there pushes where it has no
-    room: it overlaps with all lifts.
+    It is moved, and others are pushed, by no more than `most`, and what overlapped it keeps a gap.
+    Returned is whether it rests, falls, or has no room: it overlaps with all lifts.  Only where it
+    rests, the others lie as they were pushed.
     """
-    way: Way = way_of(outline, edges, rules)
-    corners, first, boxes, sides = around
-    lying = Polygons(corners.copy(), first, boxes.copy(), sides)
-    press: Press = press_of(way, around, lying)
-    press.most, press.gap = most, gap
-    x: cython.double = at[0]
+    way: Way = press.block
     pressed: dict = {}
     now: dict = {}
     room: cython.bint = False
@@ -65,7 +46,7 @@ def put_down(
         for lift in lifts:
             if lift < least:
                 continue
-            y: cython.double = at[1] + lift
+            y: cython.double = start_y + lift
             if lift not in pressed:
                 lie(press, now, {})
                 pressed[lift] = squeezed_in(press, x, y)
@@ -75,7 +56,8 @@ def put_down(
             now = pressed[lift][1]
             status: cython.int = let_go(way, press.heap, x + shift, y, 0.0)
             if status == RESTS:
-                return settling_of(way, status), now
+                press.pushed = now
+                return RESTS
             room = room or status != OVERLAPS
             steps += way.made
             if not way.made:
@@ -83,7 +65,8 @@ def put_down(
                 least = lift - way.here.least - way.overlap
         if not steps:
             break  # it overlaps wherever it is let go
-    return None, {} if room else None
+    lie(press, now, {})
+    return FALLS if room else OVERLAPS
 
 
 @cython.cclass
@@ -91,15 +74,18 @@ class Press:
     """A block, what lies around it, and room for corners and for the ends of two polygons."""
 
 
-def press_of(way, around, lying):
-    """Return a block, and what lies around it: as it did, and as it does."""
+def press_of(way, heap, most, gap):
+    """Return a block, and what lies around it, which is moved."""
     press: Press = Press()
-    press.room, press.block, press.one = [], way, MovingStone()
-    press.heap = heap_of(lying, 0.0)
-    press.heap.beyond = way.beyond
-    press.corners, press.boxes = doubles(around.corners), doubles(around.boxes)
-    most: cython.Py_ssize_t = 2 * (way.count + len(around.corners))
-    press.one.corners, press.turned = kept_doubles(press.room, most), kept_doubles(press.room, most)
+    press.room, press.block, press.one, press.heap = [], way, MovingStone(), heap
+    press.most, press.gap = most, gap
+    size: cython.Py_ssize_t = 2 * heap.starts[heap.size]
+    press.corners = kept_doubles(press.room, size)
+    press.boxes = kept_doubles(press.room, 4 * heap.size)
+    move_doubles(press.corners, 0, heap.corners, 0, size)
+    move_doubles(press.boxes, 0, heap.boxes, 0, 4 * heap.size)
+    size += 2 * way.count
+    press.one.corners, press.turned = kept_doubles(press.room, size), kept_doubles(press.room, size)
     press.bottoms, press.tops = kept_doubles(press.room, LINES), kept_doubles(press.room, LINES)
     press.low, press.high = kept_doubles(press.room, LINES), kept_doubles(press.room, LINES)
     press.one.first = 0

@@ -31,10 +31,9 @@ def rotation(angle_deg: float) -> Pair:
     return ((cos, sin), (-sin, cos), (-cos, -sin), (sin, -cos))[int(quarter) % 4]
 
 
-def turn(points: Floats, angle_deg: float) -> Floats:
-    """Turn points (n, 2), y up, counter-clockwise about the origin."""
-    cos, sin = rotation(angle_deg)
-    return np.ascontiguousarray(points * cos + points[:, ::-1] * (-sin, sin))
+def wrap_deg(angle_deg: float) -> float:
+    """Bring an angle into [-180, 180)."""
+    return (angle_deg + 180.0) % 360.0 - 180.0
 
 
 def turned_boxes(points: Floats, turns: Floats) -> Floats:

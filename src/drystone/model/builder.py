@@ -3,15 +3,14 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 import shapely
 from scipy.special import ndtri
 
+from drystone.kernels.as_built import Built
 from drystone.kernels.polygons import Points, area_and_centroid
 from drystone.kernels.profiles import Floats
-from drystone.kernels.raster import turn
 from drystone.model.outlines import Outlined
 
 ROBOT, HAND = 0.015, 0.03
@@ -62,7 +61,7 @@ class BuilderErrors:
         """Return errors of a share of these."""
         return BuilderErrors(**{name: share * value for name, value in vars(self).items()})
 
-    def all_built(self, corners: Points, numbers: Floats) -> list["Built"]:
+    def all_built(self, corners: Points, numbers: Floats) -> list[Built]:
         """Return a block as it may be, and where it is put, for one that was seen and planned.
 
         Errors are `numbers` of standard deviation 1, (n, :data:`NUMBERS`), of the block as it lies
@@ -79,7 +78,7 @@ class BuilderErrors:
 
 def put_down_with(
     errors: BuilderErrors, group: Sequence[Outlined], numbers: Floats
-) -> list[list[tuple[int, "Built"]]]:
+) -> list[list[tuple[int, Built]]]:
     """Return a stone and its wedges as they are and where they are put, for each of some runs.
 
     The stone comes first.  `numbers`, (runs, blocks, :data:`NUMBERS`), have standard deviation 1.
@@ -101,22 +100,6 @@ def stratified(rng: np.random.Generator, runs: int, blocks: int) -> Floats:
     ranges = rng.permuted(np.tile(np.arange(runs), (blocks * NUMBERS, 1)), axis=1)
     shares = (ranges + rng.random(ranges.shape)) / runs
     return np.asarray(ndtri(shares)).T.reshape(runs, blocks, NUMBERS)
-
-
-@dataclass(frozen=True, eq=False)
-class Built:
-    """A block somewhere in a wall."""
-
-    outline: Points  # (n, 2): as planned, not turned further, about its centroid
-    x: float  # of the centroid, wall frame
-    y: float
-    angle_deg: float  # by which it is turned from the plan
-    size: float  # root of its area, as it was seen
-
-    @cached_property
-    def corners(self) -> Points:
-        """Corners in the wall frame, (n, 2)."""
-        return np.asarray(turn(self.outline, self.angle_deg) + (self.x, self.y))  # noqa: RUF005
 
 
 def as_planned(corners: Points) -> Built:

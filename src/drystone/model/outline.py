@@ -7,8 +7,8 @@ import shapely
 from scipy import ndimage
 from skimage import measure
 
-from drystone.kernels.polygons import Points, area_and_centroid
-from drystone.kernels.raster import Mask, turn
+from drystone.kernels.polygons import Points, area_and_centroid, turn
+from drystone.kernels.raster import Mask
 
 HALVINGS = 6
 """How often the tolerance is halved before the contour is taken as it is."""

@@ -11,6 +11,7 @@ import numpy as np
 from drystone.errors import InputError
 from drystone.kernels.gaps import crosses_any
 from drystone.kernels.polygons import Points, place_on_grid
+from drystone.kernels.raster import wrap_deg
 from drystone.model.placement import Placement, Settled, Side
 from drystone.model.pose import PosedStone
 from drystone.model.stone import Stone
@@ -22,7 +23,6 @@ from drystone.planner.measured import MeasuredPlace
 from drystone.planner.replay import judged, replayed
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.workshop import Workshop
-from drystone.poses import wrap_deg
 from drystone.settle.placing import settled_in
 from drystone.settle.rest import (
     Repose,

@@ -10,12 +10,11 @@ from scipy import ndimage
 
 from drystone.errors import InputError
 from drystone.kernels.coverage import coverage, windows
-from drystone.kernels.polygons import Points
-from drystone.kernels.raster import Mask, turn
+from drystone.kernels.polygons import Points, turn
+from drystone.kernels.raster import Mask, wrap_deg
 from drystone.model.site import Site, working_px
 from drystone.model.stone import Stone, StoneSet
 from drystone.model.wall import Labels, Wall
-from drystone.poses import wrap_deg
 from drystone.settle.rest import placed_outline
 
 SEEN = (0.6, 1.5)

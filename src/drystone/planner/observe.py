@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from drystone.errors import Notice, UsageError
+from drystone.kernels.raster import wrap_deg
 from drystone.model.placement import Placement
 from drystone.model.site import Site
 from drystone.planner.as_measured import far_from, rebuilt
@@ -22,7 +23,6 @@ from drystone.planner.measured import (
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.stock import sides_of
 from drystone.planner.workshop import Workshop
-from drystone.poses import wrap_deg
 
 Measurement: TypeAlias = Mapping[int, MeasuredPose] | NDArray[np.integer]
 """Poses by the ids of stones, or a picture of ids (:func:`drystone.planner.measured.places_in`)."""

@@ -4,13 +4,12 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from drystone.kernels.polygons import Points
-from drystone.kernels.raster import turn
+from drystone.kernels.polygons import Points, turn
+from drystone.kernels.raster import wrap_deg
 from drystone.model.site import Site
 from drystone.model.wall import Group, Wall, outlined
 from drystone.physics.building import stays
 from drystone.planner.build import Candidate
-from drystone.poses import wrap_deg
 from drystone.selection.policy import Offer, Point
 from drystone.statics.model import GROUND, Interface
 

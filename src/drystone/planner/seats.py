@@ -13,14 +13,14 @@ from itertools import accumulate, takewhile
 
 import numpy as np
 
+from drystone.kernels.as_built import Built, BuiltWall
 from drystone.kernels.profiles import Floats
-from drystone.model.builder import HAND, BuilderErrors, Built, as_planned, put_down_with, stratified
+from drystone.model.builder import HAND, BuilderErrors, as_planned, put_down_with, stratified
 from drystone.model.stone import Stone
 from drystone.model.wall import Group, Wall, outlined
 from drystone.planner.vary import TRIAL_DRAWS
 from drystone.poses import RecentlyUsed
-from drystone.settle.as_built import BuiltWall
-from drystone.settle.putting import astray
+from drystone.settle.putting import astray, bare_wall, lost
 from drystone.settle.settings import SettleSettings
 
 MARGIN = 1.25
@@ -55,7 +55,7 @@ class Seats:
         self._pinned = pinned
         self._fall = FALL if count <= MANY else 0.5 * FALL
         self._errors = BuilderErrors.of_precision(MARGIN * HAND, mean_size)
-        self._bare = [BuiltWall(mu, settle)] * settle.trials
+        self._bare = [bare_wall(mu, settle)] * settle.trials
         self._known = RecentlyUsed[bytes, list[BuiltWall]](KNOWN_BYTES)  # by what was laid
         self._last: tuple[Sequence[Group], list[bytes]] = (), [b""]  # steps, and their digests
         self._numbers: dict[tuple[int, int], Floats] = {}  # what is drawn for a stone and wedges
@@ -136,11 +136,12 @@ def _tried(
 ) -> tuple[bool, BuiltWall]:
     """Lay a stone in the wall of a trial, and say whether something falls."""
     put = wall.put(pieces)
-    if stone not in put.laid or astray(put.laid[stone], planned[stone]):
+    rest = put.get(stone)
+    if rest is None or astray(rest, planned[stone]):
         return True, wall.held(planned)
     after = put.loaded(stone)
-    lost = after.lost(put)
-    return (True, put.held({i: put.laid[i] for i in lost})) if lost else (False, after)
+    fell = lost(put, after)
+    return (True, put.held({i: put.laid[i] for i in fell})) if fell else (False, after)
 
 
 def _digest(before: bytes, group: Group) -> bytes:

@@ -6,6 +6,7 @@ from statistics import fmean
 
 from drystone.clusters import cluster_stones
 from drystone.errors import UsageError
+from drystone.kernels.raster import wrap_deg
 from drystone.model.pose import PosedStone
 from drystone.model.site import Site
 from drystone.model.stone import StoneSet
@@ -15,7 +16,7 @@ from drystone.planner.seats import Seats
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.stock import Rest, SideCounts, Stock, sides_of
 from drystone.planner.views import Views
-from drystone.poses import PoseBook, wrap_deg
+from drystone.poses import PoseBook
 from drystone.settle.book import OutlineBook
 from drystone.stabilise.memory import StabiliseMemory
 

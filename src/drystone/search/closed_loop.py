@@ -18,8 +18,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from drystone.kernels.as_built import Built, BuiltWall
 from drystone.kernels.profiles import HeightProfile, bare, hanging, raised
-from drystone.model.builder import BuilderErrors, Built, as_planned, stratified
+from drystone.model.builder import BuilderErrors, as_planned, stratified
 from drystone.model.outlines import Outlined
 from drystone.physics.building import build_up, tilt_of
 from drystone.physics.scatter import Variation
@@ -27,8 +28,7 @@ from drystone.physics.tilt import TiltSettings
 from drystone.planner.vary import TRIAL_DRAWS
 from drystone.search.letting_go import cheapest_apart
 from drystone.search.rehearsal import IN_ENGINE, Groups, RehearsalRun, end_of, errors_of, mean_size
-from drystone.settle.as_built import BuiltWall
-from drystone.settle.putting import FALLEN_DEG, FALLEN_SHARE, astray
+from drystone.settle.putting import FALLEN_DEG, FALLEN_SHARE, astray, bare_wall, lost
 from drystone.settle.settings import SettleSettings
 
 TRIALS = 8
@@ -116,16 +116,17 @@ class _Stone:
 
     def aim(self, wall: BuiltWall, start: Built, least: float) -> _Aim | None:
         """Let it go at a place, and try that; None where it rests less surely than `least`."""
-        rest = wall.put(self.pieces(start)).laid.get(self.id)
+        rest = wall.put(self.pieces(start)).get(self.id)
         if rest is None or astray(rest, start):
             return None
         falls = 0.0
         for trial in self.trials:
             put = wall.put(self.pieces(self.missed(start, trial)))
-            after = put.loaded(self.id) if self.id in put.laid else put
-            if self.id not in after.laid or astray(after.laid[self.id], rest):
+            after = put if put.get(self.id) is None else put.loaded(self.id)
+            ended = after.get(self.id)
+            if ended is None or astray(ended, rest):
                 falls += 1.0
-            elif after.lost(put):
+            elif lost(put, after):
                 falls += OTHERS
             if TRIALS - falls < least * TRIALS:
                 return None
@@ -152,8 +153,8 @@ class _Stone:
         """List places on top of what is built, the lowest first; box: left, right, top."""
         left, right, top = box
         profile = bare(math.floor((right - left) / cell))
-        for i in range(len(wall.polygons)):
-            profile = raised(profile, wall.polygons.polygon(i) - (left, 0.0), i, cell)
+        for i, built in enumerate(wall.laid.values()):
+            profile = raised(profile, built.corners - (left, 0.0), i, cell)
         found = []
         for turn in QUARTERS:
             start = replace(self.seen, angle_deg=turn)
@@ -185,7 +186,7 @@ def rehearse_closed(
     The outlines and the first slip with every stone are those of
     :func:`drystone.search.rehearsal.rehearse` for the same random numbers.
     """
-    work = _Work(groups, errors, rng, BuiltWall(mu, SettleSettings()))
+    work = _Work(groups, errors, rng, bare_wall(mu, SettleSettings()))
     for stone in work.stones:
         work.lay(stone, stone.planned(), SURE)
     rooms = Counter[int]()

@@ -23,9 +23,8 @@ from drystone.kernels.course_types import (
     Weights,
 )
 from drystone.kernels.courses import ways_up
-from drystone.kernels.polygons import Points
+from drystone.kernels.polygons import Points, turn
 from drystone.kernels.profiles import StoneProfile, bare, extremes, hanging, raised
-from drystone.kernels.raster import turn
 from drystone.model.stone import Stone
 from drystone.planner.search_settings import CourseSettings
 from drystone.poses import PoseBook

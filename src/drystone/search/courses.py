@@ -20,7 +20,7 @@ from drystone.kernels.course_types import (
     Layout,
 )
 from drystone.kernels.courses import anneal, evaluate
-from drystone.kernels.raster import turn
+from drystone.kernels.polygons import turn
 from drystone.model.placement import Side
 from drystone.planner.deadline import NEVER, Deadline
 from drystone.search.course_task import CourseTask

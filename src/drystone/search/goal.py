@@ -12,8 +12,9 @@ import numpy as np
 from drystone.craft.bond import bond_faults
 from drystone.craft.masonry import Masonry
 from drystone.craft.settings import CraftSettings
+from drystone.kernels.as_built import Built
 from drystone.metrics.measure import measure_labels
-from drystone.model.builder import HAND, BuilderErrors, Built, put_down_with, stratified
+from drystone.model.builder import HAND, BuilderErrors, put_down_with, stratified
 from drystone.model.outlines import Outlined
 from drystone.model.wall import Group
 from drystone.planner.build import Build, Solves
@@ -24,7 +25,7 @@ from drystone.planner.workshop import Workshop
 from drystone.search.courses import CoursePlan
 from drystone.search.rehearsal import RunState, groups_of, mean_size, put_up
 from drystone.search.yard import Yard
-from drystone.settle.as_built import BuiltWall
+from drystone.settle.putting import bare_wall
 from drystone.statics.flow.flow_search import STARTS, NonassociativeSettings
 from drystone.statics.flow.nonassociative import nonassociative_resistance
 from drystone.statics.result import LimitStatus, Mechanism
@@ -262,7 +263,7 @@ class Rehearsals:
         self._yard, self._draws = yard, (REHEARSAL_DRAWS, draws)
         self._drawn = self._runs = runs
         self._errors: BuilderErrors | None = None
-        bare = RunState(BuiltWall(yard.settings.mu, yard.settings.settle))
+        bare = RunState(bare_wall(yard.settings.mu, yard.settings.settle))
         # Of the first wall, once it was rehearsed: its steps, states and losses in each run.
         self._first: Sequence[Group] = ()
         self._states = [[bare] for _ in range(runs)]

@@ -9,9 +9,9 @@ from numpy.lib.stride_tricks import sliding_window_view
 
 from drystone.kernels.polygons import Points
 from drystone.kernels.profiles import Floats, StoneProfile, hanging
+from drystone.kernels.raster import wrap_deg
 from drystone.planner.search_settings import LayingSettings
 from drystone.planner.views import SideView
-from drystone.poses import wrap_deg
 from drystone.settle.rest import Repose, Start, Turned, repose, rests, touch_down
 from drystone.settle.settings import SettleSettings
 from drystone.settle.wedge import WedgeLimits, wedge_for

@@ -12,6 +12,7 @@ from itertools import chain
 from operator import attrgetter
 from typing import Literal
 
+from drystone.kernels.raster import wrap_deg
 from drystone.model.landscape import Landscape
 from drystone.model.outlines import Outlined
 from drystone.model.placement import Side
@@ -20,7 +21,6 @@ from drystone.planner.build import Build, Candidate, Proposal, Solves
 from drystone.planner.evaluate import Evaluator, Loaded, trouble
 from drystone.planner.search_settings import LayingSettings
 from drystone.planner.views import SideView
-from drystone.poses import wrap_deg
 from drystone.search.courses import CoursePlan, PlannedStone
 from drystone.search.letting_go import Aim, Hand, Resting
 from drystone.search.yard import Yard

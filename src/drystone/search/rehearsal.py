@@ -12,15 +12,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from drystone.kernels.as_built import Built, BuiltWall
 from drystone.kernels.polygons import area_and_centroid
-from drystone.model.builder import BuilderErrors, Built, as_planned, put_down_with, stratified
+from drystone.kernels.raster import wrap_deg
+from drystone.model.builder import BuilderErrors, as_planned, put_down_with, stratified
 from drystone.model.outlines import Outlined
 from drystone.model.wall import Wall, outlined
 from drystone.physics.building import BuildSettings, build_up, tilt_of
 from drystone.physics.scene import EngineSettings
-from drystone.poses import wrap_deg
-from drystone.settle.as_built import BuiltWall
-from drystone.settle.putting import astray, fallen_share
+from drystone.settle.putting import astray, bare_wall, fallen_share, lost
 from drystone.settle.settings import SettleSettings
 
 Groups = Sequence[Sequence[Outlined]]
@@ -129,21 +129,22 @@ def put_up(
     `states` are those of the run after its first stones, from none on, where that was built
     before; those after the others are added to them.
     """
-    states = [RunState(BuiltWall(mu, settle))] if states is None else states
+    states = [RunState(bare_wall(mu, settle))] if states is None else states
     planned = {group[0][0]: as_planned(group[0][1]) for group in groups}
     steps = list(zip(planned.items(), put, strict=True))
     for (block, at), (stone, *wedges) in steps[len(states) - 1 :]:
         before = states[-1]
         wall = laid = before.wall.put((*wedges, stone))
-        fell = block not in laid.laid or astray(laid.laid[block], at)
-        if block in laid.laid:
+        rest = laid.get(block)
+        fell = rest is None or astray(rest, at)
+        if rest is not None:
             wall = laid.loaded(block)
         # Wedges alone may be lost.
-        falls = fell or not planned.keys().isdisjoint(wall.lost(laid))
+        falls = fell or not planned.keys().isdisjoint(lost(laid, wall))
         begins = block if falls and before.laid_last is None else before.laid_last
         states.append(RunState(wall, begins))
     wall = states[-1].wall
-    ends = tuple(end_of(block, at, wall.laid.get(block)) for block, at in planned.items())
+    ends = tuple(end_of(block, at, wall.get(block)) for block, at in planned.items())
     fallen = {end.stone for end in ends if end.fallen}
     lies = tuple((i, b.corners) for i, b in wall.laid.items() if i not in fallen)
     return RehearsalRun(ends, lies, laid_last=states[-1].laid_last)

@@ -4,13 +4,11 @@
 """
 
 import math
+from functools import lru_cache
 
-from drystone.kernels import putting
-from drystone.kernels.polygons import Polygons, place_on_grid, polygon_edges
-from drystone.kernels.raster import turn
+from drystone.kernels.as_built import Built, BuiltWall, WayDown
+from drystone.kernels.raster import wrap_deg
 from drystone.kernels.settling import SettlingRules
-from drystone.model.builder import Built
-from drystone.poses import wrap_deg
 from drystone.settle.rest import CORNER, GAIN
 from drystone.settle.settings import SettleSettings
 
@@ -31,34 +29,16 @@ STEPS = 60
 """Most steps; what rests took 10 to 30, what overlaps goes on in vain."""
 
 
-def put_down(
-    built: Built, around: Polygons, mu: float, settle: SettleSettings
-) -> tuple[Built | None, dict[int, float] | None]:
-    """Return where a block comes to rest, and by how much which others are pushed along x.
+def bare_wall(mu: float, settle: SettleSettings) -> BuiltWall:
+    """Return a wall of which nothing is built."""
 
-    None, and the others stay, where it rests nowhere near; nor are there pushes without room.
-    """
-    size, corners = built.size, turn(built.outline, built.angle_deg)
-    found, pushed = putting.put_down(
-        corners,
-        polygon_edges(corners),
-        (built.x, built.y),
-        around,
-        settling_rules(size, mu, settle),
-        lifts=[lift * size for lift in LIFTS],
-        most=ASIDE * size,
-        gap=2.0 * settle.clearance_px,
-    )
-    if found is None:
-        return None, pushed
-    x, y = place_on_grid(found.x, found.y)
-    angle_deg = wrap_deg(built.angle_deg + math.degrees(found.angle))
-    return Built(built.outline, x, y, angle_deg, size), pushed
+    @lru_cache(maxsize=4096)
+    def how(size: float) -> WayDown:
+        lifts = [lift * size for lift in LIFTS]
+        rules = settling_rules(size, mu, settle)
+        return WayDown(rules, lifts, ASIDE * size, 2.0 * settle.clearance_px)
 
-
-def touching(size: float, settle: SettleSettings) -> float:
-    """Return the gap up to which a block of a size touches what is near."""
-    return max(TOUCHING * size, 2.0 * settle.clearance_px)
+    return BuiltWall(mu, how)
 
 
 def settling_rules(size: float, mu: float, settle: SettleSettings) -> SettlingRules:
@@ -68,7 +48,7 @@ def settling_rules(size: float, mu: float, settle: SettleSettings) -> SettlingRu
         stop=0.0,
         mu=mu,
         clearance=settle.clearance_px,
-        tolerance=touching(size, settle),
+        tolerance=max(TOUCHING * size, 2.0 * settle.clearance_px),
         corner=CORNER * settle.clearance_px,
         near=STEP * size,
         far=2.0 * STEP * size,
@@ -84,15 +64,6 @@ def settling_rules(size: float, mu: float, settle: SettleSettings) -> SettlingRu
     )
 
 
-def moved(around: Polygons, pushed: dict[int, float]) -> Polygons:
-    """Return polygons of which some are moved along x."""
-    corners, boxes = around.corners.copy(), around.boxes.copy()
-    for i, x in pushed.items():
-        corners[around.first[i] : around.first[i + 1], 0] += x
-        boxes[i, ::2] += x
-    return Polygons(corners, around.first, boxes, around.edges)
-
-
 def fallen_share(x: float, y: float, turn_deg: float, size: float) -> float:
     """Return how near a block is to having fallen, from its way from the plan; from 1 on it has."""
     return max(math.hypot(x, y) / size / FALLEN_SHARE, abs(wrap_deg(turn_deg)) / FALLEN_DEG)
@@ -102,3 +73,8 @@ def astray(one: Built, other: Built) -> bool:
     """Say whether a block has fallen from one place to the other."""
     way = one.x - other.x, one.y - other.y, one.angle_deg - other.angle_deg
     return fallen_share(*way, one.size) > 1.0
+
+
+def lost(before: BuiltWall, after: BuiltWall) -> list[int]:
+    """List the blocks of a wall that have fallen since."""
+    return [i for i, was, now in after.changed(before) if now is None or astray(now, was)]

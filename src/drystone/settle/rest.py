@@ -12,11 +12,11 @@ from drystone.kernels.polygons import (
     mirrored_polygon,
     place_on_grid,
     polygon_edges,
+    turn,
 )
-from drystone.kernels.raster import turn
+from drystone.kernels.raster import wrap_deg
 from drystone.kernels.settling import Settling, SettlingRules, Status, settle
 from drystone.model.placement import Settled, Side
-from drystone.poses import wrap_deg
 from drystone.settle.settings import SettleSettings
 
 NEAR, FAR = 0.04, 0.08

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import shapely
 
-from drystone.kernels.raster import turn
+from drystone.kernels.polygons import turn
 from drystone.model.overlap import deepest_overlap, shape_of
 from drystone.model.placement import Placement, Wedge
 from drystone.model.plan import Plan, PlanMetrics, WedgeStep

@@ -9,8 +9,8 @@ import numpy as np
 import shapely
 from scipy import ndimage
 
-from drystone.kernels.polygons import Points, Polygons, area_and_centroid
-from drystone.kernels.raster import Mask, turn
+from drystone.kernels.polygons import Points, Polygons, area_and_centroid, turn
+from drystone.kernels.raster import Mask
 from drystone.model.landscape import Landscape
 from drystone.model.outline import farthest_px, reach_px
 from drystone.model.outlines import Outlines

@@ -19,7 +19,7 @@ from drystone.drawing.photo import VIEWER_PX, StonePhoto
 from drystone.drawing.report.viewer_data import PATTERNS
 from drystone.drawing.words.content import ResultCard, masons_words
 from drystone.io.published import SETS
-from drystone.kernels.raster import turn
+from drystone.kernels.polygons import turn
 from drystone.model.plan import StoneStep
 from drystone.statics.failing.mechanism import Names
 from drystone.statics.limit import lateral_resistance

@@ -1,0 +1,593 @@
+"""A wall as it is built, with errors (DESIGN 4.10).
+
+A block comes to rest on others that do not move (:mod:`drystone.kernels.putting`).  Then its weight
+goes down through the wall: from each block by the lever to the two points it bears on left and
+right of where its load acts.  A block whose load acts beside all that it bears on is let go again
+under that load, unless it is held, and what lies on it is put down again.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from drystone.kernels.polygons import Points, place_on_grid, polygon_edges, turn
+from drystone.kernels.raster import Pair, wrap_deg
+from drystone.kernels.settling import SettlingRules
+
+try:
+    import cython
+except ImportError:
+    from drystone.kernels import shim as cython
+
+if not cython.compiled:
+    from drystone.kernels.gaps import Heap
+    from drystone.kernels.lists import (
+        doubles,
+        kept_doubles,
+        kept_flags,
+        kept_ints,
+        move_doubles,
+        move_ints,
+    )
+    from drystone.kernels.meetings import find_meetings
+    from drystone.kernels.putting import Press, press_of, put_down
+    from drystone.kernels.settling import Way, let_go, way_of
+
+RESTS = cython.declare(cython.int, 0)
+OVERLAPS = cython.declare(cython.int, 2)
+
+# A block bears on what it touches where the normal of the contact goes up by at least so much.
+UPWARD = cython.declare(cython.double, 0.3)
+
+# The numbers of a row of a bed: a point, the number of the block below (-1 for the ground), and by
+# how much the normal goes up there.
+X = cython.declare(cython.Py_ssize_t, 0)
+Y = cython.declare(cython.Py_ssize_t, 1)
+BELOW = cython.declare(cython.Py_ssize_t, 2)
+UP = cython.declare(cython.Py_ssize_t, 3)
+ROW = cython.declare(cython.Py_ssize_t, 4)
+
+
+class WayDown(NamedTuple):
+    """How a block of a size is put down."""
+
+    rules: SettlingRules
+    lifts: list[float]  # so much higher it is let go where it overlaps others
+    most: float  # so far it is moved aside or pushed at most
+    gap: float  # what it is moved away from keeps this gap
+
+
+@dataclass(frozen=True, eq=False)
+class Built:
+    """A block somewhere in a wall."""
+
+    outline: Points  # (n, 2): as planned, not turned further, about its centroid
+    x: float  # of the centroid, wall frame
+    y: float
+    angle_deg: float  # by which it is turned from the plan
+    size: float  # root of its area, as it was seen
+
+    @cached_property
+    def corners(self) -> Points:
+        """Corners in the wall frame, (n, 2)."""
+        return np.asarray(turn(self.outline, self.angle_deg) + (self.x, self.y))  # noqa: RUF005
+
+
+@cython.cclass
+class Bed:
+    """Where a block touches others, from left to right: what it bears on.
+
+    Upright faces are among it where its own weight acts beside all that it bears on, or it bears on
+    nothing and hangs between them.  What is held bears on nothing, and stays whatever comes onto
+    it.
+    """
+
+
+@cython.cclass
+class BuiltWall(Heap):
+    """Blocks as they lie, each after all that it bears on; what changes it makes a new one.
+
+    `how` tells of the size of a block how it is put down.  Every block that was ever laid has a
+    number, and a place while it lies in the wall.  A bed is None where it is not known.
+    """
+
+    def __init__(self, mu: float, how: Callable[[float], WayDown]) -> None:
+        self.mu, self.how, self.width, self.beyond = mu, how, 0.0, math.inf
+        self.numbers, self.ids, self.built, self.beds = {}, [], [], []
+        make_room(self, 0, 0)
+        self.size = self.starts[0] = 0
+
+    @property
+    def laid(self) -> dict[int, Built]:
+        """Return the blocks by their ids, in the order in which they were laid."""
+        return {
+            self.ids[self.order[place]]: self.built[self.order[place]] for place in range(self.size)
+        }
+
+    @property
+    def held_bytes(self) -> int:
+        """About how much memory it takes."""
+        return 80 * self.starts[self.size] + 400 * self.size
+
+    def get(self, block: int) -> Built | None:
+        """Return a block as it lies; None where it does not."""
+        number = self.numbers.get(block)
+        return None if number is None or self.places[number] < 0 else self.built[number]
+
+    def changed(self, before: BuiltWall) -> list[tuple[int, Built, Built | None]]:
+        """List the blocks of a wall before that do not lie as they did: then and now, or None."""
+        told = ((i, one, self.get(i)) for i, one in before.laid.items())
+        return [one for one in told if one[1] is not one[2]]
+
+    def put(self, pieces: Iterable[tuple[int, Built]]) -> BuiltWall:
+        """Put blocks down on what does not move; those that rest nowhere are left out.
+
+        What is there stays as it is: a wedge whose stone has fallen waits for it.
+        """
+        return laid_too(self, list(pieces))
+
+    def held(self, blocks: Mapping[int, Built]) -> BuiltWall:
+        """Hold blocks where they are, whatever they bear on."""
+        wall: BuiltWall = copied(self, blocks.items())
+        for block, built in blocks.items():
+            number: cython.Py_ssize_t = number_of(wall, block)
+            if wall.places[number] < 0:
+                add(wall, number, built)
+            wall.beds[number] = bed_of([], True)
+        return wall
+
+    def with_burden(self, blocks: Iterable[int]) -> set[int]:
+        """Return blocks and all that lies on them."""
+        return set(blocks).union(set(self.laid).difference(self.without(blocks).laid))
+
+    def without(self, blocks: Iterable[int]) -> BuiltWall:
+        """Take up blocks, and all that lies on them."""
+        wall: BuiltWall = copied(self, ())
+        find_beds(wall)
+        kept: list = []
+        marks: cython.p_uchar = kept_flags(kept, len(wall.ids))
+        for block in blocks:
+            if block in wall.numbers:
+                marks[number_of(wall, block)] = 1
+        mark_burden(wall, marks)
+        take_up(wall, marks)
+        return wall
+
+    def loaded(self, block: int) -> BuiltWall:
+        """Let what carries a block move under it, each at most once.
+
+        What was pushed on the way to it, and what lies on that, may move too.
+        """
+        wall: BuiltWall = copied(self, ())
+        kept: list = []
+        count: cython.Py_ssize_t = len(wall.ids)
+        laid: cython.Py_ssize_t = number_of(wall, block)
+        beneath: cython.p_uchar = kept_flags(kept, count)
+        for place in range(wall.size):
+            number = wall.order[place]
+            beneath[number] = number == laid or wall.beds[number] is None
+        find_beds(wall)
+        asked = []
+        for place in range(wall.size - 1, -1, -1):
+            number = wall.order[place]
+            if not beneath[number]:
+                continue
+            if number != laid:
+                asked.append(number)
+            bed: Bed = wall.beds[number]
+            for k in range(0, ROW * bed.count, ROW):
+                if is_on(bed, k):
+                    beneath[cython.cast(cython.Py_ssize_t, bed.rows[k + BELOW])] = 1
+        loads: cython.p_double = loads_of(wall, beneath, -1, kept)
+        for i in range(len(asked) - 1, -1, -1):
+            one: cython.Py_ssize_t = asked[i]
+            if wall.places[one] < 0 or stays(wall, one, loads, False):
+                continue  # it may have fallen with another
+            # Upright faces may carry a part of what lies on it.
+            alone: cython.p_uchar = kept_flags(kept, count)
+            alone[one] = 1
+            if stays(wall, one, loads_of(wall, alone, one, kept), True):
+                continue
+            after: BuiltWall = rolled(wall, one, loads)
+            if after is not wall:
+                wall = after
+                loads = loads_of(wall, beneath, -1, kept)
+        return wall
+
+
+def make_room(wall, count, corners):
+    """Make room for so many blocks with so many corners."""
+    wall.kept = []
+    wall.places, wall.order = kept_ints(wall.kept, count), kept_ints(wall.kept, count)
+    wall.starts, wall.boxes = kept_ints(wall.kept, count + 1), kept_doubles(wall.kept, 4 * count)
+    wall.corners = kept_doubles(wall.kept, 2 * corners)
+    wall.edges = kept_doubles(wall.kept, 3 * corners)
+    return 0
+
+
+def copied(wall, pieces):
+    """Return a wall that is as another one, with room for more blocks."""
+    new: BuiltWall = BuiltWall(wall.mu, wall.how)
+    count: cython.Py_ssize_t = len(wall.ids)
+    corners: cython.Py_ssize_t = wall.starts[wall.size]
+    room: cython.Py_ssize_t = corners
+    for _, built in pieces:
+        room += len(built.outline)
+    make_room(new, count + len(pieces), room)
+    new.numbers, new.ids = dict(wall.numbers), list(wall.ids)
+    new.built, new.beds, new.size = list(wall.built), list(wall.beds), wall.size
+    move_ints(new.places, 0, wall.places, 0, count)
+    move_ints(new.order, 0, wall.order, 0, wall.size)
+    move_ints(new.starts, 0, wall.starts, 0, wall.size + 1)
+    move_doubles(new.boxes, 0, wall.boxes, 0, 4 * wall.size)
+    move_doubles(new.corners, 0, wall.corners, 0, 2 * corners)
+    move_doubles(new.edges, 0, wall.edges, 0, 3 * corners)
+    return new
+
+
+def number_of(wall, block):
+    """Return the number of a block, which may be new."""
+    found = wall.numbers.get(block)
+    if found is not None:
+        return found
+    number: cython.Py_ssize_t = len(wall.ids)
+    wall.numbers[block], wall.places[number] = number, -1
+    wall.ids.append(block)
+    wall.built.append(None)
+    wall.beds.append(None)
+    return number
+
+
+def add(wall, number, built):
+    """Let a block lie in the wall."""
+    corners = built.corners
+    edges = polygon_edges(corners)
+    place: cython.Py_ssize_t = wall.size
+    first: cython.Py_ssize_t = wall.starts[place]
+    count: cython.Py_ssize_t = len(corners)
+    move_doubles(wall.corners, 2 * first, doubles(corners), 0, 2 * count)
+    move_doubles(wall.edges, 3 * first, doubles(edges), 0, 3 * count)
+    left: cython.double = wall.corners[2 * first]
+    low: cython.double = wall.corners[2 * first + 1]
+    right, high = left, low
+    for k in range(2 * first, 2 * (first + count), 2):
+        left, right = min(left, wall.corners[k]), max(right, wall.corners[k])
+        low, high = min(low, wall.corners[k + 1]), max(high, wall.corners[k + 1])
+    wall.boxes[4 * place], wall.boxes[4 * place + 1] = left, low
+    wall.boxes[4 * place + 2], wall.boxes[4 * place + 3] = right, high
+    wall.starts[place + 1] = first + count
+    wall.order[place], wall.places[number], wall.built[number] = number, place, built
+    wall.size += 1
+    return 0
+
+
+def take_up(wall, marks):
+    """Take marked blocks out of the wall."""
+    to: cython.Py_ssize_t = 0
+    to_corner: cython.Py_ssize_t = 0
+    for place in range(wall.size):
+        number = wall.order[place]
+        first, count = wall.starts[place], wall.starts[place + 1] - wall.starts[place]
+        if marks[number]:
+            wall.places[number], wall.beds[number] = -1, None
+            continue
+        move_doubles(wall.corners, 2 * to_corner, wall.corners, 2 * first, 2 * count)
+        move_doubles(wall.edges, 3 * to_corner, wall.edges, 3 * first, 3 * count)
+        move_doubles(wall.boxes, 4 * to, wall.boxes, 4 * place, 4)
+        wall.starts[to], wall.order[to], wall.places[number] = to_corner, number, to
+        to, to_corner = to + 1, to_corner + count
+    wall.starts[to], wall.size = to_corner, to
+    return 0
+
+
+def laid_too(before, pieces):
+    """Return a wall with blocks put down that did not lie in it; without those that do not rest."""
+    wall: BuiltWall = copied(before, pieces)
+    for block, built in pieces:
+        number: cython.Py_ssize_t = number_of(wall, block)
+        if wall.places[number] < 0:
+            lay(wall, number, built)
+    return wall
+
+
+def lay(wall, number, built):
+    """Put a block down, and return whether it rests, falls, or has no room.
+
+    Beds of what was pushed, and of what lies on that, are not known any more.
+    """
+    rules, lifts, most, gap = wall.how(built.size)
+    outline = turn(built.outline, built.angle_deg)
+    edges = polygon_edges(outline)
+    way: Way = way_of(outline, edges, rules)
+    press: Press = press_of(way, wall, most, gap)
+    status: cython.int = put_down(press, built.x, built.y, lifts)
+    if status != RESTS:
+        return status
+    kept: list = []
+    marks: cython.p_uchar = kept_flags(kept, len(wall.ids))
+    for place, shift in press.pushed.items():
+        pushed: cython.Py_ssize_t = wall.order[place]
+        marks[pushed] = 1
+        wall.built[pushed] = replace(wall.built[pushed], x=wall.built[pushed].x + shift)
+    if press.pushed:
+        for k in range(wall.size):
+            one = wall.order[k]
+            bed: Bed = wall.beds[one]
+            if bed is not None and not bed.held and (marks[one] or rests_on(bed, marks)):
+                wall.beds[one] = None
+    x, y = place_on_grid(way.here.x, way.here.y)
+    angle_deg = wrap_deg(built.angle_deg + math.degrees(way.here.turn))
+    add(wall, number, replace(built, x=x, y=y, angle_deg=angle_deg))
+    return status
+
+
+def find_beds(wall):
+    """Look for what blocks bear on where it is not known."""
+    for place in range(wall.size):
+        number = wall.order[place]
+        if wall.beds[number] is not None:
+            continue
+        built = wall.built[number]
+        corners = built.corners
+        tolerance: cython.double = wall.how(built.size).rules.tolerance
+        found = find_meetings(
+            doubles(corners), len(corners), wall.corners, wall.starts, wall.boxes, place,
+            tolerance, 0.0,
+        )  # fmt: skip
+        touched: list = []
+        for other, count, points, (_, up) in zip(*[part.tolist() for part in found], strict=True):
+            below = wall.ids[wall.order[other]] if other >= 0 else -1
+            touched += [(x, y, below, up) for x, y in points[:count]]
+        touched.sort()
+        bears_on: list = [row for row in touched if row[3] >= UPWARD]
+        if bears_on and bears_on[0][0] <= built.x <= bears_on[len(bears_on) - 1][0]:
+            # Else friction on the others holds it, as it came to rest there.
+            touched = bears_on
+        rows = [(x, y, wall.numbers.get(below, -1), up) for x, y, below, up in touched]
+        wall.beds[number] = bed_of(rows, False)
+    return 0
+
+
+def bed_of(rows, held):
+    """Return a bed of rows."""
+    bed: Bed = Bed()
+    bed.kept, bed.count, bed.held, bed.hangs = [], len(rows), held, True
+    bed.rows = kept_doubles(bed.kept, ROW * bed.count)
+    for i in range(bed.count):
+        k = ROW * i
+        bed.rows[k + X], bed.rows[k + Y], bed.rows[k + BELOW], bed.rows[k + UP] = rows[i]
+        bed.hangs = bed.hangs and not bears(bed, k, False)
+    return bed
+
+
+def bears(bed, k, faced):
+    """Say whether a block bears on a row, also where the face is upright."""
+    return bed.rows[k + UP] >= UPWARD or (faced and bed.rows[k + UP] > -UPWARD)
+
+
+def is_on(bed, k):
+    """Say whether a block lies on the one below in a row; what bears on nothing hangs on all."""
+    return bed.rows[k + BELOW] >= 0.0 and (bed.hangs or bears(bed, k, False))
+
+
+def rests_on(bed, marks):
+    """Say whether a block lies on a marked one."""
+    for k in range(0, ROW * bed.count, ROW):
+        if is_on(bed, k) and marks[cython.cast(cython.Py_ssize_t, bed.rows[k + BELOW])]:
+            return True
+    return False
+
+
+def mark_burden(wall, marks):
+    """Mark all that lies on what is marked."""
+    for place in range(wall.size):
+        number = wall.order[place]
+        if not marks[number]:
+            marks[number] = rests_on(wall.beds[number], marks)
+    return 0
+
+
+def loads_of(wall, marks, unfaced, kept):
+    """Return the loads of marked blocks, and of all that lies on them: weights, x and y.
+
+    A load is the weight of a block with what lies on it, and where that acts.  With a block that is
+    `unfaced`, all others bear on upright faces, too.
+    """
+    two: cython.Py_ssize_t[2] = [0, 0]
+    count: cython.Py_ssize_t = len(wall.ids)
+    burden: cython.p_uchar = kept_flags(kept, count)
+    sums: cython.p_double = kept_doubles(kept, 3 * count)
+    loads: cython.p_double = kept_doubles(kept, 3 * count + 1)
+    for number in range(count):
+        burden[number] = marks[number] if wall.places[number] >= 0 else 0
+    mark_burden(wall, burden)
+    for place in range(wall.size):
+        number = wall.order[place]
+        if burden[number]:
+            built = wall.built[number]
+            at = 3 * number
+            weight: cython.double = built.size**2
+            sums[at], sums[at + 1], sums[at + 2] = weight, weight * built.x, weight * built.y
+    for place in range(wall.size - 1, -1, -1):
+        number = wall.order[place]
+        if not burden[number]:
+            continue
+        at = 3 * number
+        weight = loads[at] = sums[at]
+        x = loads[at + 1] = sums[at + 1] / weight
+        loads[at + 2] = sums[at + 2] / weight
+        bed: Bed = wall.beds[number]
+        find_carrying(bed, unfaced >= 0 and number != unfaced, x, two)
+        if two[0] < 0:
+            continue
+        left, right = bed.rows[two[0] + X], bed.rows[two[1] + X]
+        share = (x - left) / (right - left) if right > left else 0.0
+        for i in range(2):
+            part = weight * share if i else weight * (1.0 - share)
+            k = two[i]
+            below = cython.cast(cython.Py_ssize_t, bed.rows[k + BELOW])
+            if below >= 0 and burden[below]:
+                sums[3 * below] += part
+                sums[3 * below + 1] += part * bed.rows[k + X]
+                sums[3 * below + 2] += part * bed.rows[k + Y]
+    return loads
+
+
+def find_carrying(bed, faced, x, two):
+    """Find the rows left and right of a load; one beside all hangs on the last, twice.
+
+    -1 where the block bears on nothing.
+    """
+    two[0] = two[1] = -1
+    for k in range(0, ROW * bed.count, ROW):
+        if bears(bed, k, faced):
+            if two[0] < 0 or bed.rows[k + X] < x:
+                two[0] = k
+            two[1] = k
+            if bed.rows[k + X] >= x:
+                break
+
+
+def stays(wall, number, loads, faced):
+    """Say whether a block bears its load.
+
+    A stone on it that another block bears too comes to bear further in, and with less, once the
+    block begins to roll.  Friction with that stone holds it back, as far as the other one holds it.
+    """
+    two: cython.Py_ssize_t[2] = [0, 0]
+    on: Bed = wall.beds[number]
+    x: cython.double = loads[3 * number + 1]
+    first: cython.Py_ssize_t = -1
+    last: cython.Py_ssize_t = -1
+    for k in range(0, ROW * on.count, ROW):
+        if bears(on, k, False):
+            first = k if first < 0 else first
+            last = k
+    if on.held or first < 0:
+        return on.held
+    near: cython.double = wall.how(wall.built[number].size).rules.tolerance
+    left: cython.bint = x < on.rows[first + X]
+    edge: cython.Py_ssize_t = first if left else last
+    edge_x: cython.double = on.rows[edge + X]
+    edge_y: cython.double = on.rows[edge + Y]
+    beside: cython.double = edge_x - x if left else x - edge_x
+    if beside <= near:
+        return True
+    # About the edge, that rolls it.
+    moment: cython.double = loads[3 * number] * beside
+    for place in range(wall.size):
+        other = wall.order[place]
+        bed: Bed = wall.beds[other]
+        on_it = False
+        for k in range(0, ROW * bed.count, ROW):
+            on_it = on_it or (bed.rows[k + BELOW] == number and is_on(bed, k))
+        if not on_it:
+            continue
+        part, at = loads[3 * other], loads[3 * other + 1]
+        find_carrying(bed, faced, at, two)
+        outer, held = two[0], two[1]
+        if outer < 0:
+            continue
+        if bed.rows[outer + BELOW] != number:
+            outer, held = held, outer
+        from_x, outer_x = bed.rows[held + X], bed.rows[outer + X]
+        if bed.rows[outer + BELOW] != number or bed.rows[held + BELOW] == number:
+            continue
+        if outer_x == from_x:
+            continue
+        # Of all points of both the last one on the way to the middle of the block.
+        inner, furthest = outer, 0.0
+        for k in range(0, ROW * bed.count, ROW):
+            away = bed.rows[k + X] - from_x
+            if bed.rows[k + BELOW] == number and bears(bed, k, faced):
+                if away * (outer_x - from_x) > 0.0 and abs(away) > furthest:
+                    inner, furthest = k, abs(away)
+        if (from_x < outer_x) != left:
+            inner = outer
+        inner_x = bed.rows[inner + X]
+        was = part * (at - from_x) / (outer_x - from_x)
+        share = part * (at - from_x) / (inner_x - from_x)
+        sign = 1.0 if left else -1.0
+        moment += sign * (share * (edge_x - inner_x) - was * (edge_x - outer_x))
+        moment -= wall.mu * min(share, part - share) * (bed.rows[inner + Y] - edge_y)
+    return moment <= near * loads[3 * number]
+
+
+def rolled(wall, number, loads):
+    """Let a block go under its load, and put down again what lies on it.
+
+    It stays where it is held: what lies on it has no room to follow.
+    """
+    kept: list = []
+    built = wall.built[number]
+    rules = wall.how(built.size).rules
+    x: cython.double = loads[3 * number + 1]
+    y: cython.double = loads[3 * number + 2]
+    marks: cython.p_uchar = kept_flags(kept, len(wall.ids))
+    boxes: cython.p_double = kept_doubles(kept, 4 * wall.size)
+    marks[number] = 1
+    mark_burden(wall, marks)
+    move_doubles(boxes, 0, wall.boxes, 0, 4 * wall.size)
+    lifted = []
+    for place in range(wall.size):
+        one = wall.order[place]
+        if marks[one]:
+            lifted.append(one)
+            # Nothing touches what has no box.
+            wall.boxes[4 * place] = wall.boxes[4 * place + 1] = math.inf
+            wall.boxes[4 * place + 2] = wall.boxes[4 * place + 3] = -math.inf
+    corners = built.corners - (x, y)  # gravity acts there
+    edges = polygon_edges(corners)
+    status: cython.int = OVERLAPS
+    for sticks in (True, False):
+        way: Way = way_of(corners, edges, rules)
+        way.sticks = sticks
+        status = let_go(way, wall, x, y, 0.0)
+        if status == RESTS:
+            break
+    move_doubles(wall.boxes, 0, boxes, 0, 4 * wall.size)
+    if status == RESTS and way.here.x == x and way.here.y == y and way.here.turn == 0.0:
+        return wall
+    below: BuiltWall = copied(wall, ())
+    take_up(below, marks)
+    rest = None
+    if status == RESTS:
+        turn_deg = math.degrees(way.here.turn)
+        rest = moved_with(built, (x, y), (way.here.x, way.here.y), turn_deg)
+        x, y = place_on_grid(rest.x, rest.y)
+        rest = replace(rest, x=x, y=y)
+        add(below, number, rest)
+    # What was pushed into another is put down again, too.
+    again = [
+        (wall.ids[one], wall.built[one]) for one in lifted if one != number or status == OVERLAPS
+    ]
+    after: BuiltWall = laid_too(below, again)
+    lost = [block for block, one in again if after.get(block) is None]
+    if rest is not None and lost:
+        # What finds no place where it was goes with the block.
+        start, end = (built.x, built.y), (rest.x, rest.y)
+        turn_deg = rest.angle_deg - built.angle_deg
+        again = [
+            (i, moved_with(one, start, end, turn_deg) if i in lost else one) for i, one in again
+        ]
+        after = laid_too(below, again)
+        for piece in again:
+            if after.get(piece[0]) is None:
+                trial: BuiltWall = copied(after, [piece])
+                if lay(trial, number_of(trial, piece[0]), piece[1]) == OVERLAPS:
+                    return wall
+    find_beds(after)
+    return after
+
+
+def moved_with(one: Built, start: Pair, end: Pair, turn_deg: float) -> Built:
+    """Return a block that moves as a point does, and turns about it."""
+    ((x, y),) = turn(np.array([(one.x - start[0], one.y - start[1])]), turn_deg).tolist()
+    angle_deg = wrap_deg(one.angle_deg + turn_deg)
+    return replace(one, x=x + end[0], y=y + end[1], angle_deg=angle_deg)
