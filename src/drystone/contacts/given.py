@@ -343,7 +343,7 @@ def read_numbers(value: Any, shape: tuple[int, ...], where: str) -> Points:
     try:
         given = np.array(value, dtype=object)
         flat = [of_type(one, float, where) for one in given.ravel()]
-        array = np.array(flat).reshape(given.shape)
+        array: Points = np.array(flat).reshape(given.shape)
     except (TypeError, ValueError, OverflowError):
         array = np.full((), nan)
     fits = [n for n, m in zip(array.shape, shape, strict=False) if m in (n, -1)]
@@ -378,7 +378,7 @@ def with_pair_friction(
     model: RigidBlockModel, entries: Sequence[Any], ids: Collection[int]
 ) -> RigidBlockModel:
     """Give all interfaces of pairs of ids, in either order, the friction that a file names."""
-    friction = {}
+    friction: dict[frozenset[int], float] = {}
     for place, entry in enumerate(entries):
         pair = _between(entry, ids, where := f"friction, entry {place + 1}")
         if "mu" not in entry:
