@@ -169,6 +169,8 @@ def test_measure(finished, tmp_path, run):
         return run("measure", given, "--json", *options).json()
 
     assert measured()["F_SF"] == 1.0
+    # It takes no block model (E134), other than analyse.
+    assert ["block model" in run(one, "--help").out for one in ("measure", "analyse")] == [0, 1]
     given = measured("--wall", "40x50")
     assert given["F_SF"] == pytest.approx(20 * 40 / (40 * 50))
     reduced = measured("--scale", ".5", "--wall", "40x50")

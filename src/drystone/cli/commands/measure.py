@@ -22,7 +22,7 @@ from drystone.statics.limit import lateral_resistance
 
 def add(command: argparse.ArgumentParser) -> None:
     """Add its options."""
-    add_wall(command)
+    add_wall(command, "or ")
     # fmt: off
     option = command.add_argument
     option("--mu", type=numbers.not_negative, help="coefficient of friction (default 0.58)")
