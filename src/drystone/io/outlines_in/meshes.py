@@ -143,10 +143,8 @@ def _stl(data: bytes) -> Mesh:
         is_whole = len(found) == 3 * data.count(b"endfacet") and b"endsolid" in data[-_HEAD:]
         if not found or not is_whole:
             raise _cut("its facets have no three corners, or endsolid is missing")
-        try:
-            corners = np.array([[float(word) for word in corner] for corner in found])
-        except ValueError as error:
-            raise _cut(str(error)) from error
+        with foreign(_cut):
+            corners = np.array(found, float)
     else:
         number = int.from_bytes(data[80:84], "little")
         if number == 0 or len(data) < 84 + _STL_FACET.itemsize * number:
