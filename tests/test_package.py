@@ -41,15 +41,17 @@ def test_every_public_name_is_there():
 
 
 def test_an_argument_of_the_wrong_type_is_a_type_error_that_names_it():
-    functions = [getattr(ds, one) for one in ds.__all__ if one[0].islower() and one != "generate"]
-    assert len(functions) > 13
+    names = [(ds, one) for one in ds.__all__ if one != "generate"]
+    names += [(ds.generate, one) for one in ds.generate.__all__]
+    functions = [getattr(home, one) for home, one in names if one[0].islower()]
+    assert len(functions) > 18
     for called in functions:
         first, *rest = inspect.signature(called).parameters.values()
         more = [object() for one in rest if one.default is one.empty]
         with pytest.raises(TypeError, match=f"^{first.name} must be .*, not <object"):
             called(object(), *more)
         assert pickle.dumps(called)  # it is where it says that it is
-    stones = rubble()
+    stones, bricks = rubble(), ds.generate.BrickSettings()
     for text, called in (
         ("stones must be StoneSet, not [<Stone 1:", lambda: ds.plan_wall(list(stones), 60, 20)),
         ("width must be a number, not '60'", lambda: ds.plan_wall(stones, "60", 20)),
@@ -59,6 +61,9 @@ def test_an_argument_of_the_wrong_type_is_a_type_error_that_names_it():
         ("width_px must be a whole number, not 60.5", lambda: ds.Site(60.5, 20)),
         ("label must be a list, not 'stone'", lambda: ds.ReadSettings(label="stone")),
         ("changes must be Mapping, not None", lambda: ds.PlannerSettings().updated(None)),
+        ("rng must be Generator, not '7'", lambda: ds.generate.brick_stones(bricks, "7")),
+        *((f"count must be a whole number, not {wrong!r}", lambda w=wrong, make=make: make(count=w))
+          for wrong in (2.5, "3") for make, _ in ds.generate.GENERATORS.values()),
         ("two_sided must be true or false, not 'no'", lambda: ds.PlannerSettings(two_sided="no")),
     ):  # fmt: skip
         with pytest.raises(TypeError, match=re.escape(text)):

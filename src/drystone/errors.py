@@ -324,5 +324,6 @@ CODES = {
     "W303": "While planning, the solver gave up on some candidates, which were passed over.",
     "W304": "Pixels of a stone lie apart from it; all pixels of an id are one rigid block.",
     "W305": "Stones have fewer than two contact points.",
+    "W306": "A block model gives the friction of blocks that do not touch.",
 }
 """Every code, and what it means in one sentence; docs/errors.md has more, and the cures."""

@@ -341,6 +341,13 @@ def test_the_report_holds_the_card_and_needs_nothing_else(tmp_path, run):
     assert ("tilted by" in closed.out, "E129" in run(*asked).err) == (False, True)
 
 
+def test_friction_of_blocks_that_do_not_touch_is_named(tmp_path, run):
+    pairs = [{"between": pair, "mu": 0.4} for pair in ([1, 0], [2, 1], [0, 2])]
+    path = written(tmp_path / "b.json", box(0, 0, 1, 1), box(0, 1, 1, 1), friction=pairs)
+    said = run("analyse", path).err
+    assert "W306 blocks do not touch, so their friction is left aside: 0 and 2. Correct" in said
+
+
 def test_the_friction_of_head_joints_in_the_options_wins_over_that_of_the_file(tmp_path, run):
     pair = box(0, 0, 1, 2), box(1, 0, 1, 2)
     model = written(tmp_path / "pair.json", *pair, mu=0.9, mu_head=0.9)

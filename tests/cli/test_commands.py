@@ -108,6 +108,13 @@ def test_measure_can_follow_its_own_cure(tmp_path, run):
         assert run(command, path, "--background", "255", "--json").json()[counted] == 2
 
 
+def test_a_wall_that_hangs_from_the_top_of_its_picture_is_put_on_the_ground_aloud(tmp_path, run):
+    path = tmp_path / "wall.png"
+    write_labels(np.repeat(np.uint32([[1], [2], [0]]), 20, axis=0).repeat(20, axis=1), path)
+    for command in ("analyse", "measure", "craft"):
+        assert "W301 20 empty rows below the stones" in run(command, path).err
+
+
 @pytest.mark.parametrize("command", ["analyse", "measure", "craft"])
 def test_what_was_done_to_a_picture_is_said_once(command, tmp_path, run):
     mask, path = np.zeros((40, 60), np.uint16), tmp_path / "mask.png"
@@ -162,6 +169,8 @@ def test_measure(finished, tmp_path, run):
         return run("measure", given, "--json", *options).json()
 
     assert measured()["F_SF"] == 1.0
+    # It takes no block model (E134), other than analyse.
+    assert ["block model" in run(one, "--help").out for one in ("measure", "analyse")] == [0, 1]
     given = measured("--wall", "40x50")
     assert given["F_SF"] == pytest.approx(20 * 40 / (40 * 50))
     reduced = measured("--scale", ".5", "--wall", "40x50")

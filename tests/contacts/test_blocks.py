@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from drystone.contacts.blocks import model_from_labels, model_with, notice_of_pieces, pieces_apart
+from drystone.contacts.blocks import model_from_labels, model_with, notices_of, pieces_apart
 from drystone.contacts.interfaces import PointContacts, find_interfaces
 from drystone.errors import InputError, LabelImageError
 from drystone.kernels.patches import painted_patch
@@ -119,7 +119,7 @@ def test_pieces_apart_are_those_of_every_stone_alone(labels):
 def test_the_notice_names_five_stones_and_counts_the_others():
     labels = np.zeros((3, 28), np.uint32)
     labels[0, ::4], labels[2, ::4] = range(1, 8), range(1, 8)
-    (notice,) = notice_of_pieces(labels)
+    (notice,) = notices_of(labels)
     assert notice.code == "W304"
     assert notice.message.startswith("1 pixel of stone 1, 1 pixel of stone 2, ")
     assert "1 pixel of stone 5, pixels of 2 more lie apart from them" in notice.message

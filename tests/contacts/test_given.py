@@ -141,11 +141,12 @@ def one_block(**parts):
     return {"blocks": [{"id": 1, "polygon": square(0, 0), **parts}]}
 
 
+PAIRLESS = [1, 9], [1, 1], [[1], 0], [True, 0], ["1", 0], [1], 10
 MALFORMED = [
     {},
     {"blocks_xywh": 3},
     {"blocks_xywh": [[0, 0, 1]]},
-    {"blocks_xywh": [[0, 0, 1, "wide"]]},
+    *({"blocks_xywh": [[0, 0, 1, wrong]]} for wrong in ("wide", "1.0", b"1", True, np.True_, None)),
     {"blocks_xywh": [[0, 0, 1, math.nan]]},
     {"blocks_xywh": [[0, 0, 1, 0]]},
     {"blocks_xywh": [[0, 0, 1, 10**400]]},
@@ -156,17 +157,19 @@ MALFORMED = [
     # Weights that no solver tells from rounding.
     {"blocks": [{"id": i, "polygon": square(2 * i, 0), "density": 1e7 ** (i - 1)} for i in (1, 2)]},
     one_block(id=0),
-    one_block(id=True),
+    *(one_block(id=wrong) for wrong in (True, np.True_, "1", 1.0)),
     one_block(polygon=square(0, 0)[:2]),
     one_block(polygon=[[0, 0], [2, 2], [2, 0], [0, 2]]),
     one_block(fixed="yes"),
-    *(one_block(density=wrong) for wrong in (0, 1e60, 1e-60)),
+    *(one_block(density=wrong) for wrong in (0, 1e60, 1e-60, True, "2")),
+    one_block(polygon=[[0, 0], [2, 0], [2, "2"]]),
     {**PAIR, "mu": "rough"},
     {**PAIR, "mu": True},
     {**PAIR, "mu_head": "none"},
     {**PAIR, "friction": 3},
     {**PAIR, "friction": [7]},
-    *({**PAIR, "friction": [{"between": pair, "mu": 0.3}]} for pair in ([1, 9], [1, 1], [[1], 0])),
+    *({**PAIR, "friction": [{"between": pair, "mu": 0.3}]} for pair in PAIRLESS),
+    {**PAIR, "friction": [{"between": two, "mu": m} for two, m in (([1, 2], 0.3), ([2, 1], 0.4))]},
     {**PAIR, "friction": [{"between": [1, 2], "mu": True}]},
     {**PAIR, "friction": [{"between": [1, 2]}]},
     {**PAIR, "interfaces": [{"between": [0, 1], "points": [[0, 0]], "normal": [0, 1]}]},
@@ -215,6 +218,16 @@ def test_what_is_no_block_model_is_refused(data, code, cure):
     assert refused.value.cure
     assert cure in refused.value.cure
     assert refused.value.where
+
+
+def test_numbers_of_numpy_are_ids_and_numbers():
+    corners = [[np.float32(x), np.int8(y)] for x, y in square(0, 0)]
+    data = one_block(id=np.int64(7), polygon=corners, density=np.float32(2))
+    twice = 2 * [{"between": [np.uint8(7), 0], "mu": np.float32(0.25)}]
+    model = model_from_json({**data, "mu": np.int64(1), "friction": twice})
+    (block,), (face,) = model.blocks, model.interfaces
+    assert (block.id, block.weight, model.mu, face.mu) == (7, 8, 1, 0.25)
+    assert {type(one) for one in (block.id, model.mu, face.mu)} == {int, float}
 
 
 def test_a_corner_at_which_an_edge_goes_straight_on_is_none():

@@ -329,6 +329,8 @@ def test_no_corner_shall_hang_over_a_void():
     assert number == pytest.approx(1 / 3)
     assert cases == [((3,), "nothing under its left corner, 0.35 of its width")]
     assert said("voids", wall(stone=box(-0.4, 1, 2, 1))) == (0.0, [])
+    for hung in (box(-0.4, 1.9, 2, 1), box(-3.0, 1, 2, 1)):
+        assert said("voids", wall(stone=hung))[1] == [((3,), "hangs, with nothing under it")]
     # A gap between two stones is under no corner, and a wedge fills.
     assert said("voids", wall(stone=box(1.3, 1, 2, 1))) == (0.0, [])
     loops = FOOT | {3: box(-0.7, 1, 2, 1), 9: box(-0.6, 0, 0.5, 1)}

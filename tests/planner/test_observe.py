@@ -238,6 +238,9 @@ def test_wedges_in_a_picture_are_no_stones():
     assert numbers == list(range(min(numbers), min(numbers) + len(numbers)))
 
 
+WRONG = "0.5", True, np.True_, None, 10**400
+
+
 def test_what_makes_no_sense_is_refused_and_changes_nothing():
     one = planner(EXACT)
     stone_id = next(one.steps()).stone_id
@@ -248,8 +251,11 @@ def test_what_makes_no_sense_is_refused_and_changes_nothing():
         ("E195", in_metres(planned(one)) | {99: nowhere}),
         (f"E195 .*no stone '{stone_id}' among", {str(stone_id): nowhere}),  # it comes out of JSON
         ("E197", {1: MeasuredPose(1.3, 0.1, 0.0)}),
-        ("E197", {1: MeasuredPose(0.5, nan, 0.0)}),
-        ("E197", {1: MeasuredPose(0.5, 0.1, inf)}),
+        *(
+            (f"E197 .*{said}", {1: MeasuredPose(*pose)})
+            for number, said in ({nan: "nan", inf: "inf"} | dict.fromkeys(WRONG, "Pose")).items()
+            for pose in ((number, 0.1, 0.0), (0.5, number, 0.0), (0.5, 0.1, number))
+        ),
         (r"E197 .*\(0.5, 0.1, 0.0\), which is not a MeasuredPose", {stone_id: (0.5, 0.1, 0.0)}),
         *(("E196", array) for array in (labels[:-1], labels * 1.0, labels[None])),
         ("E197", np.where(np.arange(250) < x, labels, 0)),
@@ -274,6 +280,12 @@ def test_poses_of_steps_are_in_metres_and_need_a_scale():
     radians = np.radians(angle)
     assert step.pose3d.xaxis == pytest.approx((np.cos(radians), 0.0, np.sin(radians)))
     assert step.place_pose(0.3).y_m == pytest.approx(0.15)
+    for poses in (step.place_pose, step.pick_pose):
+        for wrong, kind, said in ((-0.1, UsageError, "E138 .*not a thickness"),
+                                  (float("nan"), UsageError, "E138"),
+                                  ("0.3", TypeError, "thickness_m must be a number")):  # fmt: skip
+            with pytest.raises(kind, match=said):
+                poses(wrong)
     centroid = one.workshop.stones.by_id(step.stone_id).centroid
     pick = step.pick_pose(0.3)
     assert (pick.x_m * PX_PER_M, pick.y_m * PX_PER_M) == pytest.approx(centroid)

@@ -295,6 +295,7 @@ def test_a_promise_is_the_least_that_a_stone_costs_where_it_stays():
         spotted = proposer.spotted(trial)
         proposal = proposer.stabilised(spotted)
         assert (spotted.promise == math.inf) == (not spotted.spots)
+        assert proposal is None or proposal.trial_angle_deg == trial.key[1]
         if proposal is not None and _stays(proposal):
             assert spotted.promise <= proposal.cost + 1e-9
             stays += 1

@@ -59,6 +59,8 @@ def test_what_is_taken_down_is_built_again_as_it_was(geometry, wedges, kept):
     ]
     new, left_out = again(planner, groups, states[kept], build.course_heights_px())
     assert left_out == ()
+    angles = [(a.proposal.trial_angle_deg, a.proposal.stabilised.placement) for a in new.actions]
+    assert all(tried == placed.posed.angle_deg for tried, placed in angles[kept:])
     assert scenes.same(*(SimpleNamespace(build=one, stopped=None) for one in (new, build)))
     points = ([i.points.tobytes() for i in one.model.interfaces] for one in (new, build))
     assert next(points) == next(points)

@@ -99,6 +99,12 @@ def test_what_is_incomplete(monkeypatch):
     tall = ds.plan_wall(scenes.blocks({1: (58, 20)}), 60, 20, scale=1.0, method="paper")
     assert tall.metrics.F_SF < 0.99
     assert (tall.status, tall.success, tall.shortfall) == ("complete", True, "")
+    # One that hangs from the top of the picture does not stand.
+    hung = ds.Planner(scenes.blocks({1: (58, 20)}), ds.Site(60, 40))
+    assert not hung.observe({1: ds.MeasuredPose(30.0, 29.9, 0.0)}).stands
+    assert list(hung.steps()) == []
+    result = ds.result_of(hung)
+    assert (result.status, result.shortfall) == ("incomplete", "as it was built, it does not stand")
     # What is just too low does not read as high enough.
     monkeypatch.setattr("drystone.search.plan_result.mean_top", lambda _: 0.8999)
     result = ds.plan_wall(scenes.bricks(3), 60, 20, scale=1.0, method="paper")

@@ -312,17 +312,17 @@ def test_the_same_surroundings_elsewhere_are_not_worked_out_again(monkeypatch):
     monkeypatch.setattr(memory_module, "make_stable", counted)
     memory = StabiliseMemory(BOOK, 12.0, StabiliseSettings(method="wedge"))
     found = []
-    for offset, col, side, wedge_id in ((60, 62, "left", 90), (100, 102, "right", 95)):
-        site = np.roll(ledge(site=(24, 200)), offset, axis=1)
-        found.append(memory.stabilise(site, (BAR, 14, col), side, wedge_id))
+    for offset, air, side, wedge_id in ((60, 30, "left", 90), (100, 47, "right", 95)):
+        site = np.pad(np.roll(ledge(site=(24, 200)), offset, axis=1), ((air, 0), (0, 0)))
+        found.append(memory.stabilise(site, (BAR, air + 14, offset + 2), side, wedge_id))
     assert len(worked_out) == 1
     here, there = found
-    assert there.placement.col - here.placement.col == 40
+    assert (there.placement.col - here.placement.col, here.placement.row) == (40, 44)
     assert (here.placement.side, there.placement.side) == ("left", "right")
     assert there.wedges[0].col - here.wedges[0].col == 40
+    assert [one.wedges[0].row - one.placement.row for one in found] == [6, 6]  # right below it
     assert (here.wedges[0].id, there.wedges[0].id) == (90, 95)
-    another = np.roll(ledge(site=(24, 200)), 101, axis=1)
-    memory.stabilise(another, (BAR, 14, 102), "right", 95)
+    memory.stabilise(np.roll(site, 1, axis=1), (BAR, 61, 102), "right", 95)
     assert len(worked_out) == 2, "another ledge is another scene"
 
 

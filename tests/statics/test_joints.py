@@ -1,6 +1,7 @@
 """Friction of joints, what it is worth to a wall, and what only it holds on upright faces."""
 
 from dataclasses import replace
+from typing import get_args
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from drystone.statics import squeeze
 from drystone.statics.joints import loose_blocks, slippery, with_head_friction
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.loads import Loads, growing_with_height, tilting_table, weight
+from drystone.statics.lp.extremes import Solver
 from drystone.statics.model import GROUND, Interface
 from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
 from drystone.statics.sensitivity import friction_curve, friction_sensitivity
@@ -119,6 +121,16 @@ def test_all_blocks_are_named_that_hang_between_faces_or_under_them(model, named
     assert held_by_upright_faces(model) == named
 
 
+@pytest.mark.parametrize("solver", get_args(Solver))
+def test_what_is_named_hangs_on_no_solver_nor_on_the_order_of_blocks(solver):
+    """Bricks on a hanging one fall with it, and the piers stay, though they might be pushed."""
+    piers = [0, 0, 1, 6], [2, 0, 1, 6]
+    model = boxes(*piers, [1, 1, 1, 1], [1, 2, 1, 1], [1, 3, 1, 1])
+    assert held_by_upright_faces(model, solver=solver) == (3, 4, 5)
+    other = replace(model, blocks=model.blocks[::-1], interfaces=model.interfaces[::-1])
+    assert held_by_upright_faces(other, solver=solver) == (5, 4, 3)
+
+
 def test_an_arch_stands_by_friction_near_its_crown():
     """Joints near the keystone are upright; smooth ones carry one line of thrust only."""
     assert 8 in held_by_upright_faces(arch(15, 0.3, 0.5))
@@ -143,6 +155,10 @@ def test_friction_of_pairs_stays_on_other_faces():
 
 
 def test_a_solver_that_gives_up_knows_nothing(monkeypatch):
+    with monkeypatch.context() as patched:
+        patched.setattr(squeeze, "least_constraint", lambda *_: None)
+        assert held_by_upright_faces(between_piers()) is None
+
     def failing(model, *_, **__):
         ends = (LimitResult(LimitStatus.FAILED, d) for d in ("left", "right"))
         return LateralResistance(*ends, model.mu)

@@ -43,12 +43,12 @@ def add_reading(command: argparse.ArgumentParser) -> None:
            help="image to take from annotations of several, or the picture of YOLO's shares")
 
 
-def add_wall(command: argparse.ArgumentParser) -> None:
-    """Add the wall, how its stones are read, and where results go."""
+def add_wall(command: argparse.ArgumentParser, or_a: str = "block model (JSON); or ") -> None:
+    """Add the wall, what else it may be, how its stones are read, and where results go."""
     # fmt: off
     option = command.add_argument
     option("wall_path", metavar="WALL",
-           help=f"plan.json or its folder; block model (JSON); or stones: {STONES}")
+           help=f"plan.json or its folder; {or_a}stones: {STONES}")
     add_reading(command)
     list_only(command)
     command.epilog = READING

@@ -66,11 +66,6 @@ def model_from_labels(labels: Labels, mu: float = 0.58) -> ImageModel:
     check_mu(mu)
     filled = np.flatnonzero((labels > 0).any(axis=1))
     height = int(filled[-1]) + 1 if filled.size else labels.shape[0]
-    notices = []
-    if height < labels.shape[0]:
-        rows = counted(labels.shape[0] - height, "empty row")
-        what = f"{rows} below the stones left out: the wall stands on its lowest stone pixel."
-        notices.append(Notice("W301", what))
     above = labels[:height]
     runs = label_runs(above)
     ids, place = np.unique(runs.labels, return_inverse=True)
@@ -81,7 +76,7 @@ def model_from_labels(labels: Labels, mu: float = 0.58) -> ImageModel:
     columns = zip(ids.tolist(), area.tolist(), x.tolist(), y.tolist(), strict=True)
     blocks = tuple(Block(i, a, (cx, cy)) for i, a, cx, cy in columns)
     model = RigidBlockModel(blocks, find_interfaces(above), mu)
-    return ImageModel(model, height, (*notices, *notice_of_pieces(above)))
+    return ImageModel(model, height, notices_of(labels))
 
 
 def model_with(
@@ -137,15 +132,18 @@ def pieces_apart(labels: Labels) -> tuple[tuple[int, int], ...]:
     return tuple((int(ids[k]), int(apart[k])) for k in np.flatnonzero(apart).tolist())
 
 
-def notice_of_pieces(labels: Labels) -> tuple[Notice, ...]:
-    """Say in a notice (W304) which stones have pixels that lie apart; none when none have."""
-    apart = pieces_apart(labels)
+def notices_of(labels: Labels) -> tuple[Notice, ...]:
+    """Say how many rows below the stones are empty (W301), and whose pixels lie apart (W304)."""
+    below, apart = int(np.argmax(labels[::-1].any(axis=1))), pieces_apart(labels)
+    rows = f"{counted(below, 'empty row')} below the stones left out"
+    notices = (Notice("W301", f"{rows}: the wall stands on its lowest stone pixel."),) * (below > 0)
     if not apart:
-        return ()
+        return notices
     told = [f"{px} pixel{'s' * (px > 1)} of stone {block}" for block, px in apart[:NAMED]]
     if len(apart) > NAMED:
         told.append(f"pixels of {len(apart) - NAMED} more")
     one = len(apart) == 1
     verb, them = "lies" if one and apart[0][1] == 1 else "lie", "it" if one else "them"
     what = f"{', '.join(told)} {verb} apart from {them}; all pixels of an id are one rigid block."
-    return (Notice("W304", what, "Give every piece an id of its own, or clean the picture."),)
+    cure = "Give every piece an id of its own, or clean the picture."
+    return (*notices, Notice("W304", what, cure))

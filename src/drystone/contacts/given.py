@@ -1,8 +1,8 @@
 """Block models given as rectangles or polygons (DESIGN §2): a dict in, a model out."""
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
-from math import inf, sqrt
+from math import inf, nan, sqrt
 from typing import Any
 
 import numpy as np
@@ -12,6 +12,7 @@ from drystone.contacts.blocks import check_mu
 from drystone.errors import InputError
 from drystone.kernels.polygons import Points
 from drystone.model.overlap import overlap_depth
+from drystone.model.settings import of_type
 from drystone.statics.joints import with_head_friction
 from drystone.statics.model import FREEDOMS, GROUND, Block, Interface, RigidBlockModel
 
@@ -135,14 +136,11 @@ def _polygon_block(place: int, entry: Any) -> tuple[Block, Points]:
         raise bad("it has 'xywh', which belongs into \"blocks_xywh\".", where, cure)
     if not isinstance(entry, Mapping) or "polygon" not in entry:
         raise bad("it has no 'polygon'.", where, "Give id and polygon.")
-    block_id, fixed, density = entry.get("id"), entry.get("fixed", False), entry.get("density", 1.0)
-    if (
-        not isinstance(block_id, int)
-        or isinstance(block_id, bool)
-        or not (GROUND < block_id < 2**32)
-    ):
-        raise bad(f"its id is {block_id!r}.", where, "Give a whole number from 1 to 4294967295.")
-    density = float(read_numbers(density, (), where))
+    (block_id,), fixed = _whole([entry.get("id")]) or [GROUND], entry.get("fixed", False)
+    if not GROUND < block_id < 2**32:
+        what = f"its id is {entry.get('id')!r}."
+        raise bad(what, where, "Give a whole number from 1 to 4294967295.")
+    density = float(read_numbers(entry.get("density", 1.0), (), where))
     if density < SMALLEST or not isinstance(fixed, bool):
         what = f"density must be above 0 ({SMALLEST:g} or more) and fixed true or false."
         raise bad(what, where, "Correct it.")
@@ -343,26 +341,33 @@ def read_list(data: Mapping[str, Any], key: str) -> Sequence[Any]:
 def read_numbers(value: Any, shape: tuple[int, ...], where: str) -> Points:
     """Read finite numbers; -1 in `shape` stands for any length."""
     try:
-        array = np.array(value, dtype=float)
+        given = np.array(value, dtype=object)
+        flat = [of_type(one, float, where) for one in given.ravel()]
+        array: Points = np.array(flat).reshape(given.shape)
     except (TypeError, ValueError, OverflowError):
-        array = np.empty(0)
-    fits = array.ndim == len(shape) and all(
-        n in (m, -1) for n, m in zip(shape, array.shape, strict=True)
-    )
-    if not fits or not np.isfinite(array).all():
+        array = np.full((), nan)
+    fits = [n for n, m in zip(array.shape, shape, strict=False) if m in (n, -1)]
+    if not len(fits) == array.ndim == len(shape) or not np.isfinite(array).all():
         raise bad(f"{value!r} is not made of finite numbers as it should be.", where, "Correct it.")
     if np.abs(array).max(initial=0.0) > LARGEST:
         raise bad(f"{value!r} holds a number above {LARGEST:g}.", where, "Use another unit.")
     return array
 
 
+def _whole(values: Iterable[Any]) -> list[int] | None:
+    """Return whole numbers, of NumPy too; None when one of the values is none."""
+    try:
+        return [of_type(one, int, "") for one in values]
+    except TypeError:
+        return None
+
+
 def read_mu(data: Mapping[str, Any], key: str, default: float) -> float:
     """Read a coefficient of friction."""
-    mu = data.get(key, default)
-    if not isinstance(mu, int | float) or isinstance(mu, bool):
-        raise bad(f"{key} is {mu!r}.", key, "Give a number.")
     try:
-        mu = float(mu)
+        mu: float = of_type(data.get(key, default), float, key)
+    except TypeError as error:
+        raise bad(f"{error}.", key, "Give a number.") from None
     except OverflowError:  # a whole number of hundreds of digits
         mu = inf
     check_mu(mu)
@@ -373,12 +378,15 @@ def with_pair_friction(
     model: RigidBlockModel, entries: Sequence[Any], ids: Collection[int]
 ) -> RigidBlockModel:
     """Give all interfaces of pairs of ids, in either order, the friction that a file names."""
-    friction = {}
+    friction: dict[frozenset[int], float] = {}
     for place, entry in enumerate(entries):
         pair = _between(entry, ids, where := f"friction, entry {place + 1}")
         if "mu" not in entry:
             raise bad("it has no 'mu'.", where, "Give the friction of this pair.")
-        friction[frozenset(pair)] = read_mu(entry, "mu", 0.0)
+        mu = read_mu(entry, "mu", 0.0)
+        if friction.setdefault(frozenset(pair), mu) != mu:
+            what = f"blocks {pair[0]} and {pair[1]} have another friction further up."
+            raise bad(what, where, "Leave one of them out.")
     faces = (
         replace(face, mu=friction.get(frozenset((face.block, face.other)), face.mu))
         for face in model.interfaces
@@ -431,13 +439,9 @@ def read_interfaces(entries: Sequence[Any], ids: Collection[int]) -> tuple[Inter
 
 def _between(entry: Any, ids: Collection[int], where: str) -> tuple[int, int]:
     pair = entry.get("between") if isinstance(entry, Mapping) else None
-    known = [GROUND, *ids]
-    if (
-        not isinstance(pair, list | tuple)
-        or len(pair) != 2
-        or not all(isinstance(one, int) and one in known for one in pair)
-    ):
+    whole = _whole(pair) if isinstance(pair, list | tuple) else None
+    if whole is None or len(whole) != 2 or not {GROUND, *ids}.issuperset(whole):
         raise bad(f"it is between {pair!r}.", where, 'Give "between": two ids; 0 is the ground.')
-    if pair[0] == pair[1]:
-        raise bad(f"it is between {pair[0]} and itself.", where, "Name two blocks.")
-    return pair[0], pair[1]
+    if whole[0] == whole[1]:
+        raise bad(f"it is between {whole[0]} and itself.", where, "Name two blocks.")
+    return whole[0], whole[1]

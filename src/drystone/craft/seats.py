@@ -138,6 +138,7 @@ def voids(masonry: Masonry) -> Evidence:
                 cells = slice(0, count) if side == "left" else slice(-int(count), None)
                 line: Line = np.column_stack([under.x[cells], under.low[cells]])[[0, -1]]
                 words = f"nothing under its {side} corner, {share:.2f} of its width"
+                words = words if len(filled) else "hangs, with nothing under it"
                 cases.append(Case((stone,), round(share, 6), words, (line,)))
     stones = {case.stones for case in cases}
     return Evidence(len(stones) / len(sides), worst_first(cases))

@@ -7,9 +7,11 @@ import numpy as np
 from numpy.random import Generator
 
 from drystone.generate.layout import check_room, check_setting, stones_of
+from drystone.model.settings import typed
 from drystone.model.stone import StoneSet
 
 
+@typed
 @dataclass(frozen=True, kw_only=True)
 class BrickSettings:
     """Equal bricks.
@@ -48,6 +50,7 @@ class BrickSettings:
         return math.floor(self.height_px * self.aspect + 0.5)
 
 
+@typed
 def brick_stones(settings: BrickSettings, rng: Generator) -> StoneSet:
     """Generate bricks lying on their bed faces, halves among them in random order.
 

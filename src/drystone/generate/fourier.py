@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from drystone.generate.layout import accepted, check_room, check_setting, stones_of, whole_mask
 from drystone.kernels.polygons import Points
+from drystone.model.settings import typed
 from drystone.model.stone import StoneSet
 
 LARGEST_DESCRIPTOR = 2.0
@@ -22,6 +23,7 @@ LARGEST_TABLE = 50_000_000
 """Points times harmonics: with more, most machines run out of memory."""
 
 
+@typed
 @dataclass(frozen=True, kw_only=True)
 class FourierSettings:
     """How rounded stones look; the paper's four sets are D2 = 0 or 0.2 with either radius.
@@ -126,6 +128,7 @@ def fourier_contour(radius_px: float, settings: FourierSettings, rng: Generator)
     return np.column_stack([radius * np.cos(theta), radius * np.sin(theta)])
 
 
+@typed
 def fourier_stones(settings: FourierSettings, rng: Generator) -> StoneSet:
     """Generate rounded stones (§5.3).
 

@@ -13,6 +13,7 @@ from drystone.errors import UsageError
 from drystone.kernels.outline import rasterise_polygon
 from drystone.kernels.polygons import Points
 from drystone.kernels.raster import Mask
+from drystone.model.settings import typed
 from drystone.model.stone import Source, Stone, StoneSet
 from drystone.model.wall import Labels
 
@@ -37,6 +38,7 @@ def check_room(
         raise UsageError("E130", what, where=f"generate {where}", cure=cure)
 
 
+@typed
 def lay_out(stones: StoneSet) -> Labels:
     """Draw stones in rows, in the order of their ids, without turning or touching any.
 

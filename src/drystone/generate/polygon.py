@@ -18,12 +18,14 @@ from drystone.generate.layout import (
     whole_mask,
 )
 from drystone.kernels.polygons import Points
+from drystone.model.settings import typed
 from drystone.model.stone import StoneSet
 
 SMALLEST_SHARE = 0.1
 """Polygons with less than this share of the brick's area are splinters and rejected."""
 
 
+@typed
 @dataclass(frozen=True, kw_only=True)
 class PolygonSettings:
     """Bricks of a running bond whose corners are moved at random.
@@ -77,6 +79,7 @@ def noisy_polygon(settings: PolygonSettings, rng: Generator) -> Points | None:
     return None if splinter else corners
 
 
+@typed
 def polygon_stones(settings: PolygonSettings, rng: Generator) -> StoneSet:
     """Generate noisy polygons, each of them simple and in one piece.
 

@@ -15,6 +15,7 @@ from drystone.generate.layout import (
     whole_mask,
 )
 from drystone.kernels.polygons import Points, turn
+from drystone.model.settings import typed
 from drystone.model.stone import StoneSet
 
 LOOSE_COURSE = 0.08
@@ -24,6 +25,7 @@ NARROWEST, WIDEST = 0.65, 1.35
 """Range of the stones' widths in a course, over their mean."""
 
 
+@typed
 @dataclass(frozen=True, kw_only=True)
 class RubbleSettings:
     """Rubble for a wall of a given size.
@@ -125,6 +127,7 @@ def rubble_outline(
     return _cut_corners(_cut_corners(corners, settings.rounding), settings.rounding)
 
 
+@typed
 def rubble_stones(settings: RubbleSettings, rng: Generator) -> StoneSet:
     """Generate coursed rubble whose total area suits a wall, in random order.
 

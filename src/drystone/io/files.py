@@ -132,7 +132,7 @@ def given_bytes(path: Path) -> bytes:
         raise InputError("E100", what, where=str(path), cure=cure) from error
 
 
-for _package in ("PIL", "ezdxf", "tifffile", "trimesh"):
+for _package in ("PIL", "ezdxf", "tifffile"):
     # Without any handler logging prints to stderr; those of the user's own program still hear.
     logging.getLogger(_package).addHandler(logging.NullHandler())
 

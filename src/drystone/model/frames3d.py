@@ -104,13 +104,20 @@ def wall_pose(x_m: float, z_m: float, thickness_m: float, angle_deg: float) -> P
     """
     half = math.radians(angle_deg) / 2.0
     turn = Quaternion(0.0, -math.sin(half), 0.0, math.cos(half))
-    return Pose3d(x_m, thickness_m / 2.0, z_m, turn)
+    return Pose3d(x_m, _half(thickness_m), z_m, turn)
 
 
 def photo_pose(x_m: float, y_m: float, thickness_m: float) -> Pose3d:
     """Return where a part of some thickness lies in the photo's frame (y up), its front face up."""
     half = math.sqrt(0.5)
-    return Pose3d(x_m, y_m, thickness_m / 2.0, Quaternion(-half, 0.0, 0.0, half))
+    return Pose3d(x_m, y_m, _half(thickness_m), Quaternion(-half, 0.0, 0.0, half))
+
+
+def _half(thickness_m: float) -> float:
+    if not 0.0 <= thickness_m < math.inf:
+        what = f"{thickness_m} is not a thickness."
+        raise UsageError("E138", what, where="thickness_m", cure="Give 0 or more, in metres.")
+    return thickness_m / 2.0
 
 
 def metres_of(length_px: float, px_per_m: float | None) -> float:

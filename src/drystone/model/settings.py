@@ -37,7 +37,7 @@ def of_type(value: Any, hint: Any, name: str) -> Any:
         if kind in (int, float):
             takes = "__index__" if kind is int else "__float__"
             # A truth value is none, though it is one to Python.
-            if hasattr(value, takes) and not isinstance(value, bool):
+            if hasattr(value, takes) and not isinstance(value, bool | np.bool_):
                 return index(value) if kind is int else float(value)
         elif kind is Literal:
             if value not in of:

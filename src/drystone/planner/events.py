@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from drystone.model.frames3d import Pose3d, metres_of, photo_pose, wall_pose
+from drystone.model.settings import typed
 from drystone.planner.build import Build, Candidate
 
 
@@ -38,22 +39,24 @@ class Step:
         """
         return self.place_pose()
 
+    @typed
     def place_pose(self, thickness_m: float = 0.0) -> Pose3d:
         """Return where the centroid of the stone goes in the wall (frame W), and how it is turned.
 
         The centroid is half of the wall's thickness behind the front face.  UsageError (E131): the
-        site has no scale.
+        site has no scale; E138: the thickness is negative or not finite.
         """
         site, placement = self.build.wall.site, self.action.stabilised.placement
         x, y = placement.centroid(site.height_px)
         metres = metres_of(1.0 / site.scale, site.px_per_m)
         return wall_pose(x * metres, y * metres, thickness_m, placement.posed.angle_deg)
 
+    @typed
     def pick_pose(self, thickness_m: float = 0.0) -> Pose3d:
         """Return where the stone lies in the picture that it was read from (frame P).
 
-        Its centroid is half of its thickness above the ground.  UsageError (E131): the site has no
-        scale.
+        Its centroid is half of its thickness above the ground.  Errors are those of
+        :meth:`place_pose`.
         """
         x, y = self.action.stabilised.placement.posed.stone.centroid
         metres = metres_of(1.0, self.build.wall.site.px_per_m)

@@ -12,6 +12,7 @@ from drystone.errors import InputError
 from drystone.kernels.coverage import coverage, windows
 from drystone.kernels.polygons import Points, turn
 from drystone.kernels.raster import Mask, wrap_deg
+from drystone.model.settings import of_type
 from drystone.model.site import Site, working_px
 from drystone.model.stone import Stone, StoneSet
 from drystone.model.wall import Labels, Wall
@@ -75,25 +76,26 @@ def places_of(poses: Mapping[int, MeasuredPose], site: Site) -> dict[int, Measur
     width, height = site.extent_px
     found = {}
     for stone_id, pose in poses.items():
-        if not isinstance(pose, MeasuredPose):
-            raise InputError(
-                "E197", f"stone {stone_id} is measured at {pose!r}, which is not a MeasuredPose.",
-                where="observe", cure="Give MeasuredPose(x, y, angle_deg) for each stone.",
-            )  # fmt: skip
-        x, y = float(pose.x) * px, float(pose.y) * px
+        try:
+            told = (pose.x, pose.y, pose.angle_deg)
+            x, y, angle = (of_type(number, float, "each") for number in told)
+        except (AttributeError, TypeError, OverflowError):
+            what = f"stone {stone_id} is measured at {pose!r}, which is not a MeasuredPose."
+            cure = "Give MeasuredPose(x, y, angle_deg), three numbers, for each stone."
+            raise InputError("E197", what, where="observe", cure=cure) from None
         # What is no number compares with nothing.
-        inside = 0.0 <= x <= width and 0.0 <= y <= height
-        if not inside or not math.isfinite(pose.angle_deg):
+        inside = 0.0 <= x * px <= width and 0.0 <= y * px <= height
+        if not inside or not math.isfinite(angle):
             raise InputError(
                 "E197",
-                f"stone {stone_id} is measured at ({pose.x:g}, {pose.y:g}), "
-                f"{pose.angle_deg:g} degrees, which is not in the wall of "
-                f"{width / px:g} x {height / px:g} {'m' if site.px_per_m else 'source px'}.",
+                f"stone {stone_id} is measured at ({x:g}, {y:g}), {angle:g} degrees, which is not "
+                f"in the wall of {width / px:g} x {height / px:g} "
+                f"{'m' if site.px_per_m else 'source px'}.",
                 where="observe",
                 cure="Leave out what has fallen; poses are of the wall frame, from its left end "
                 "and the ground.",
             )
-        found[int(stone_id)] = MeasuredPlace(x, y, wrap_deg(float(pose.angle_deg)))
+        found[int(stone_id)] = MeasuredPlace(x * px, y * px, wrap_deg(angle))
     return found
 
 

@@ -47,8 +47,8 @@ class PlanResult:
     success : bool
         True unless the wall is incomplete or planning was interrupted.
     status : {"complete", "incomplete", "interrupted"}
-        Incomplete: filling below 0.99 and a mean top below 0.9 of the height, or without a stone
-        that is pinned.
+        Incomplete: filling below 0.99 and a mean top below 0.9 of the height, without a stone that
+        is pinned, or as it was measured it does not stand.
     message : str
         Why construction ended.
     shortfall : str
@@ -189,6 +189,8 @@ def missing_stones(planner: Planner) -> tuple[int, ...]:
 def _shortfall(planner: Planner, metrics: PlanMetrics) -> str:
     if missing_stones(planner):
         return "stones that are pinned are missing"
+    if not all(action.stands for action in planner.build.actions):
+        return "as it was built, it does not stand"
     top = mean_top(planner.build.wall)
     if metrics.F_SF < FILLED and top < FILLED_TOP:
         below = math.floor(1e3 * top) / 1e3  # 0.8999 must not read 0.900

@@ -8,7 +8,7 @@ from drystone.cli.numbers import finite, whole_from
 from drystone.cli.output import note, prepare_files, print_json
 from drystone.cli.progress import busy
 from drystone.cli.reading import add_wall, reading_from
-from drystone.contacts.blocks import notice_of_pieces
+from drystone.contacts.blocks import notices_of
 from drystone.contacts.given import model_from_json, polygons_from_json
 from drystone.contacts.outlines import model_of_traced
 from drystone.craft import RULES, CraftReport, Finding, Limit, Masonry, look
@@ -48,7 +48,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     wall = read_wall(path, reading_from(arguments))
     note(*wall.notices)
     if wall.labels is not None and wall.blocks is None and wall.outlines is None:
-        note(*notice_of_pieces(wall.labels))
+        note(*notices_of(wall.labels))
     if wall.plan is not None and arguments.wedges:
         cure = "Leave it out; it is for a label image or a block model."
         what = "a plan says itself what its wedges are."

@@ -9,7 +9,7 @@ from drystone.cli.inputs import files_of_wall, refuse_inputs
 from drystone.cli.output import note, prepare_files, print_json, print_table
 from drystone.cli.progress import busy
 from drystone.cli.reading import add_wall, reading_from
-from drystone.contacts.blocks import model_from_labels, notice_of_pieces
+from drystone.contacts.blocks import model_from_labels, notices_of
 from drystone.contacts.given import model_from_json
 from drystone.drawing.words.content import figure_rows, number
 from drystone.errors import ExitCode, UsageError, counted
@@ -22,7 +22,7 @@ from drystone.statics.limit import lateral_resistance
 
 def add(command: argparse.ArgumentParser) -> None:
     """Add its options."""
-    add_wall(command)
+    add_wall(command, "or ")
     # fmt: off
     option = command.add_argument
     option("--mu", type=numbers.not_negative, help="coefficient of friction (default 0.58)")
@@ -48,7 +48,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     numbers.refuse_outside(arguments.px_per_m, numbers.wall_picture_px(wall))
     # Of the picture as it was given: reducing it may part what hangs together.
     pixels = wall.blocks is None and wall.outlines is None
-    note(*wall.notices, *(notice_of_pieces(wall.labels) if pixels else ()))
+    note(*wall.notices, *(notices_of(wall.labels) if pixels else ()))
     labels = reduce_labels(wall.labels, arguments.scale) if arguments.scale != 1 else wall.labels
     with busy("measuring the wall", quiet=arguments.json, after_s=2.0):
         metrics = _measured(wall, labels, arguments)

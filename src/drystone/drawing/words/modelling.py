@@ -91,7 +91,13 @@ def _given(wall: GivenWall, blocks: dict[str, Any], mu: float, asked: ModelReque
         remarks["contacts"] = f"set back; F_LR {bare:.3f} with contacts up to the ends of faces"
     model, outlines = model_from_json(blocks), polygons_from_json(blocks)
     refuse_astray(model, outlines)
-    return ModelledWall(model, outlines, remarks=remarks)
+    touching = {frozenset((face.block, face.other)) for face in model.interfaces}
+    pairs = [one["between"] for one in blocks.get("friction", ())]
+    idle = [f"{one} and {other}" for one, other in pairs if frozenset((one, other)) not in touching]
+    what = f"blocks do not touch, so their friction is left aside: {listed(idle)}."
+    cure = "Correct the ids, or where the blocks lie."
+    notices = (Notice("W306", what, cure),) if idle else ()
+    return ModelledWall(model, outlines, notices=notices, remarks=remarks)
 
 
 def _drawn(wall: GivenWall, labels: Labels, mu: float, asked: ModelRequest) -> ModelledWall:

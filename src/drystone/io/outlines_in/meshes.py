@@ -1,7 +1,7 @@
 """OBJ, PLY and STL: the outlines of bodies as they are seen from one side."""
 
-import io
 import re
+import struct
 from collections import Counter
 from collections.abc import Collection, Sequence
 from itertools import islice
@@ -13,7 +13,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import KDTree
 
-from drystone.errors import InputError, Notice, extra
+from drystone.errors import InputError, Notice
 from drystone.io.files import damaged, foreign, listed, short, unusable
 from drystone.io.outlines_in import model
 from drystone.io.outlines_in.model import OutlinedStone, OutlineFile
@@ -31,9 +31,10 @@ _EDGE = 0.01
 _NEIGHBOURS = 8
 _STL_FACET = np.dtype([("normal", "<f4", (3,)), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 _STL_VERTEX = re.compile(rb"\bvertex\s+(\S+)\s+(\S+)\s+(\S+)")
-_PLY_CURE = "Copy or export it again, with faces of three corners each or as text."
-_PLY_CORNERS = ("vertex_index", "vertex_indices")
-_PLY_FACES = re.compile(rb"^element\s+face\s+(\d{1,18})", re.MULTILINE)
+_PLY_NAMES = b"char uchar short ushort int uint float double".split()
+_PLY_SIZED = b"int8 uint8 int16 uint16 int32 uint32 float32 float64".split()
+_PLY_TYPES = dict(zip(_PLY_NAMES + _PLY_SIZED, 2 * "bBhHiIfd", strict=True))
+"""Codes that struct and NumPy have for them."""
 
 
 _OTHERWISE = "--up y, z, y-back or z-back see it otherwise."
@@ -61,7 +62,7 @@ def mesh_kind(data: bytes, suffix: str) -> str | None:
     head = data[:_HEAD]
     if head.startswith((b"ply\n", b"ply\r\n")):
         return "ply"
-    if suffix == ".stl" or (head.lstrip().startswith(b"solid") and b"facet" in head):
+    if suffix == ".stl" or _is_stl_text(data):
         return "stl"
     if len(data) >= 84 and len(data) == 84 + 50 * int.from_bytes(data[80:84], "little"):
         return "stl"
@@ -129,17 +130,21 @@ def _is_inside_out(vertices: Points, faces: Sequence[NDArray[np.int64]]) -> bool
     return bool(sixths.sum() < -0.01 * np.abs(sixths).sum())
 
 
+def _is_stl_text(data: bytes) -> bool:
+    head = data[:_HEAD].lower().lstrip()
+    return head.startswith(b"solid") and b"facet" in head
+
+
 def _stl(data: bytes) -> Mesh:
     """Read triangles, of a text or of binary data."""
-    if data.lstrip().startswith(b"solid") and b"facet" in data[:_HEAD]:
+    if _is_stl_text(data):
+        data = data.lower()
         found = _STL_VERTEX.findall(data)
         is_whole = len(found) == 3 * data.count(b"endfacet") and b"endsolid" in data[-_HEAD:]
         if not found or not is_whole:
             raise _cut("its facets have no three corners, or endsolid is missing")
-        try:
-            corners = np.array([[float(word) for word in corner] for corner in found])
-        except ValueError as error:
-            raise _cut(str(error)) from error
+        with foreign(_cut):
+            corners = np.array(found, float)
     else:
         number = int.from_bytes(data[80:84], "little")
         if number == 0 or len(data) < 84 + _STL_FACET.itemsize * number:
@@ -152,21 +157,35 @@ def _stl(data: bytes) -> Mesh:
 
 
 def _ply(data: bytes) -> Mesh:
-    trimesh = extra("trimesh", "reads PLY", "mesh", "mesh")
-    said = _PLY_FACES.search(data)
-    if said is None or int(said[1]) == 0:
+    """Read a PLY, of a text or of binary data; faces may have any number of corners."""
+    head, _, body = data.partition(b"\nend_header")
+    said = re.search(rb"^format\s+(\w+)", head, re.MULTILINE)
+    order, codes = ">" if said and said[1] == b"binary_big_endian" else "<", _PLY_TYPES
+    found, faces, at = {b"vertex": np.empty(0, [(axis, "d") for axis in "xyz"])}, [], 0
+    with foreign(lambda why: damaged(why, "mesh")):
+        body = body.partition(b"\n")[2]
+        if said and said[1] == b"ascii":
+            body, codes = np.fromstring(body, "<d", sep=" ").tobytes(), dict.fromkeys(codes, "d")
+        for part in re.split(rb"^element\s", head, flags=re.MULTILINE)[1:]:
+            (element, number), *lines = (line.split() for line in part.splitlines())
+            properties = [line[1:] for line in lines if line[:1] == [b"property"]]
+            if all(len(one) == 2 for one in properties):
+                row = np.dtype([(name.decode(), order + codes[kind]) for kind, name in properties])
+                found[element] = np.frombuffer(body, row, int(number), at)
+                at += found[element].nbytes
+                continue
+            for _ in range(int(number)):
+                for *kinds, name in properties:
+                    values: tuple[float, ...] = (1,)
+                    for kind in kinds[1:] or kinds:  # of a list, first how long it is
+                        form = f"{order}{int(values[0])}{codes[kind]}"
+                        values = struct.unpack_from(form, body, at)
+                        at += struct.calcsize(form)
+                    if element == b"face" and name in (b"vertex_index", b"vertex_indices"):
+                        faces.append(np.array(values, np.int64))
+        vertices = np.column_stack([found[b"vertex"][axis].astype(float) for axis in "xyz"])
+    if not faces:
         raise unusable("the mesh has no faces")
-    with foreign(lambda why: damaged(why, "mesh", _PLY_CURE)):
-        mesh = trimesh.load_mesh(io.BytesIO(data), file_type="ply", process=False)
-        # As they are written: the mesh has faces of four corners and more in fans.
-        points, faces_of = (mesh.metadata["_ply_raw"][name]["data"] for name in ("vertex", "face"))
-        vertices = np.column_stack([np.asarray(points[axis], float) for axis in "xyz"])
-        names = faces_of if isinstance(faces_of, dict) else faces_of.dtype.names
-        written = faces_of[next(name for name in names if name in _PLY_CORNERS)]
-        lists = written["f1"] if written.dtype.names else written
-        faces = [np.asarray(face, np.int64) for face in lists]
-    if len(faces) < int(said[1]):
-        raise _cut(f"{len(faces)} of {int(said[1])} faces")
     corners, least = np.concatenate(faces), min(map(len, faces))
     if least < 3 or not 0 <= corners.min() <= corners.max() < len(vertices):
         raise _cut("a face of less than three corners, or of unknown vertices")
@@ -186,8 +205,9 @@ def _obj(data: bytes) -> Mesh:
     # By kind and name of what begins them, none before the first: faces, and all that is said.
     parts: dict[tuple[str, str], tuple[list[NDArray[np.int64]], dict[str, None]]] = {}
     part, title = ("", ""), ""
-    text = re.sub(r"\\\r?\n", " ", data.decode("utf-8", "replace"))  # lines may go on after a \
-    for number, line in enumerate(text.splitlines(), start=1):
+    # A line may go on after a \, from where on it is another line of the file: \x1f is a space.
+    text, number = re.sub(r"\\\r?\n", "\x1f", data.decode("utf-8", "replace")), 1
+    for line in text.splitlines():
         words = line.split()
         try:
             if words[:1] == ["v"]:
@@ -206,6 +226,7 @@ def _obj(data: bytes) -> Mesh:
                 part = words[0], _name(*words)
         except ValueError as error:
             raise unusable(f"line {number} cannot be used ({error})") from error
+        number += 1 + line.count("\x1f")
     if any(len(point) < 3 for point in points):
         raise unusable("a vertex has less than three coordinates")
     vertices = np.array(points, float).reshape(-1, 3)

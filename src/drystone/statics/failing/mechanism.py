@@ -268,7 +268,6 @@ _VERBS = {
 class Failure:
     """A mechanism, described."""
 
-    moving: tuple[int, ...]
     contact_kinds: tuple[ContactKind, ...]
     """What contact points do, in the order of the interfaces and their points.  The associated flow
     rule opens a sliding contact by mu times its slip: that is "sliding"."""
@@ -293,9 +292,7 @@ def describe_mechanism(
     # In shares of the largest and rounded, so that equal ones keep the order of their ids.
     largest = max((group.momentum for group in groups), default=0.0) or 1.0
     groups.sort(key=lambda group: (-round(group.momentum / largest, 9), group.blocks))
-    moving = {block for group in groups for block in group.blocks}
     return Failure(
-        moving=tuple(block for block in mechanism.block_ids if block in moving),
         contact_kinds=tuple(_KINDS[code] for code in (kin.opens + 2 * kin.slips).tolist()),
         groups=tuple(groups),
         words=in_words(groups, names or Names(), falls=falls),
