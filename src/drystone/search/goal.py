@@ -36,7 +36,7 @@ MISSING = 10.0
 SCANNED = CraftSettings(sample=0.07)
 """Bond is looked at along fewer lines than `craft` does, for every wall of a search."""
 
-QUICK = NonassociativeSettings(starts=STARTS[:1], random_starts=0, let_go=False)
+QUICK = NonassociativeSettings(starts=STARTS[:1], random_starts=0, paths=(), let_go=False)
 """One start of twelve finds the least load without dilatancy of most walls."""
 
 STOPPED = 14

@@ -348,7 +348,7 @@ def test_a_gripped_block_is_pulled_out_without_dilatancy(half_angle_deg, length,
     [(in_a_notch(30, 1.26, 0.84), "no load is too great"), (boxes([0, 0, 1, 2]), "one, 0.5.")],
 )
 def test_where_the_search_gives_up_it_says_what_associated_flow_carries(model, most):
-    nothing = NonassociativeSettings(starts=(), random_starts=0)
+    nothing = NonassociativeSettings(starts=(), random_starts=0, paths=())
     result = nonassociative_load(model, "left", settings=nothing)
     assert (result.status, result.alpha) == (LimitStatus.FAILED, None)
     assert "did not converge in 0 rounds" in result.message

@@ -21,6 +21,7 @@ import highspy
 import numpy as np
 from scipy.sparse import csc_array, vstack
 
+from drystone.statics.flow.central_path import CentralPath
 from drystone.statics.lp.highs import INFINITY, HighsSession, loaded, solved
 from drystone.statics.lp.program import EquilibriumProgram, Floats, Solution
 from drystone.statics.result import LimitStatus
@@ -39,6 +40,15 @@ golden ratio: rounds of equal steps may go round in a circle for ever."""
 
 LEAP, BETWEEN = 30.0, 20
 """So far goes a round after so many others: some slip rates grow by a few per cent in each."""
+
+MANY_POINTS = 700
+"""Models of more contact points, some 150 blocks, are answered along central paths first."""
+
+EFFORT = 1.1e8
+"""So many rounds are left to them then, times the square of contact points: so rounds grow."""
+
+CLOSING_ROUNDS = 3
+"""From the end of a path; the first one nearly always closes."""
 
 
 @dataclass(frozen=True)
@@ -72,6 +82,9 @@ class NonassociativeSettings:
     starts: tuple[Start, ...] = STARTS  # all are tried, in this order
     random_starts: int = 6  # so many more, from random slip rates
     seed: int = 0  # of the random slip rates
+    paths: tuple[float, ...] = (0.0, 1.0)
+    """How far contacts may close at first along each central path.  Those are taken of many contact
+    points, and where no start has led to an answer."""
     let_go: bool = True  # it is looked first whether the blocks can fall when they are let go
 
 
@@ -197,12 +210,32 @@ class Search:
         mechanism = np.ones(len(self._upright))
         if first is not None:
             mechanism = np.abs(self._rates.slip.T @ first.velocity)
-        settings = self._settings
+        settings, points = self._settings, len(mechanism)
         rng = np.random.default_rng(settings.seed)
         more = (Start(f"random {i + 1}", "random", 30.0) for i in range(settings.random_starts))
-        for start in (*settings.starts, *more):
-            rounds, state = self._rounds(self._slip_rates(start, mechanism, rng))
+        starts = [*settings.starts, *more]
+        left, found = settings.rounds * len(starts), False
+        many = bool(settings.paths) and points > MANY_POINTS
+        if many:
+            yield from self._along_paths()
+            starts.sort(key=lambda start: start.factor)  # the slower, the sooner it ends
+            left = int(EFFORT / points**2)
+        for start in starts:
+            rates = self._slip_rates(start, mechanism, rng)
+            rounds, state = self._rounds(rates, min(settings.rounds, left))
+            left, found = left - rounds, found or state is not None
             yield start.name, rounds, state and self._descended(state)
+        if not (many or found):
+            yield from self._along_paths()
+
+    def _along_paths(self) -> Iterator[tuple[str, int, FlowState | None]]:
+        path = CentralPath(self._program, self._rates.normal, self._rates.slip, self._sign)
+        for closing in self._settings.paths:
+            motion = path.motion(closing, self._look)
+            if motion is not None:
+                slip = np.abs(self._rates.slip.T @ motion)
+                rounds, state = self._rounds(slip, CLOSING_ROUNDS)
+                yield f"central path, closing {closing:g}", rounds, state and self._descended(state)
 
     def _slip_rates(self, start: Start, mechanism: Floats, rng: np.random.Generator) -> Floats:
         largest = float(mechanism.max(initial=0.0)) or 1.0
@@ -216,10 +249,10 @@ class Search:
         }
         return start.factor * largest * shares[start.pattern]
 
-    def _rounds(self, rates: Floats) -> tuple[int, FlowState | None]:
-        """Go on until a motion goes with the forces of a round."""
+    def _rounds(self, rates: Floats, most: int) -> tuple[int, FlowState | None]:
+        """Go on until a motion goes with the forces of a round, at most for so many."""
         session = HighsSession(self._program)
-        for number in range(1, self._settings.rounds + 1):
+        for number in range(1, most + 1):
             state = self._round(session, rates)
             if state is None:
                 return number, None
@@ -233,7 +266,7 @@ class Search:
                 rates = np.maximum(rates + LEAP * way, 0.0)
             if rates.max() > RUNAWAY:
                 return number, None
-        return self._settings.rounds, None
+        return most, None
 
     def _round(self, session: HighsSession, rates: Floats) -> FlowState | None:
         """Maximise alpha - sum r n; None when the solver gives up."""

@@ -32,6 +32,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse import block_array, csc_array, diags_array
 
+from drystone.statics.flow import flow_search
 from drystone.statics.flow.flow_search import ContactRates
 from drystone.statics.loads import Loads
 from drystone.statics.lp.clarabel import least_constraint
@@ -125,7 +126,10 @@ class _States:
         self._contacts = np.arange(rows, count, dtype=np.int32)
         fixed = np.concatenate((-program.rhs, np.zeros(2 * points)))
         lower = np.full(columns, -INFINITY)
-        self._highs = loaded({"solver": "simplex"}, matrix, (fixed, fixed), lower)
+        # Of many points a simplex method may take minutes, most for what has no answer.
+        many = {"solver": "ipm", "run_crossover": "off"}
+        options = {"solver": "simplex"} if points <= flow_search.MANY_POINTS else many
+        self._highs = loaded(options, matrix, (fixed, fixed), lower)
 
     def exact(self, acceleration: Floats, multipliers: Floats) -> Fall | None:
         """Return the answer in which contacts do what they do in an inexact one, if any.
