@@ -54,7 +54,7 @@ def test_the_grip_is_the_least_width_of_any_direction_and_wedges_are_in_no_photo
         assert 0.0 <= angle_deg < 180.0
     (wedge,) = wall.wedges
     assert (wedge.kind, wedge.name, wedge.angle_deg) == ("wedge", "wedge_010", 0.0)
-    assert wedge.under == 8
+    assert wedge.under == 3
     with pytest.raises(TypeError, match="wedge_010 is in no image"):
         wall.source_corners(wedge)
     with pytest.raises(ValueError, match="read-only"):

@@ -207,6 +207,16 @@ def test_what_is_taken_up_takes_along_what_lies_on_it_or_hangs_on_it():
     assert (list(wall.without([1]).laid), list(wall.without([2]).laid)) == ([2], [1])
 
 
+def test_blocks_that_do_not_lie_change_nothing_and_any_ids_will_do():
+    wall = built([POST, PLANK])
+    assert wall.loaded(99).laid == wall.laid == wall.without([99]).laid
+    assert (wall.with_burden(iter([1])), wall.with_burden([99])) == ({1, 2}, {99})
+    assert BARE.loaded(5).laid == {}
+    # The ground is no block, whatever number one has.
+    apart = BARE.held({-1: as_planned(box(90.0, 0.0))}).put([(1, as_planned(box(0.0, 0.0)))])
+    assert list(apart.without([-1]).laid) == [1]
+
+
 def test_a_wedge_that_waits_for_its_stone_is_not_put_down_again():
     wedge, aside = (as_planned(box(x, 0.0)) for x in (0.0, 90.0))
     wall = bare_wall(0.58, SETTLE).put([(5, wedge)]).put([(5, aside)])

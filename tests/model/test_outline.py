@@ -7,9 +7,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from drystone.io.read_stones import read_stones
-from drystone.kernels.outline import pixel_polygon
+from drystone.kernels.outline import pixel_polygon, rasterise_polygon
 from drystone.kernels.polygons import area_and_centroid, turn
-from drystone.model.outline import _contour, _mended, reach_px, second_moments, solid, stone_outline
+from drystone.model.outline import reach_px, second_moments, solid, stone_outline
 from drystone.model.stone import OUTLINE_TOLERANCE_PX, Stone
 from tests.naive import outline as naive
 from tests.strategies import blobs, holed, joined_masks, masks, repeatable
@@ -83,7 +83,7 @@ def test_an_l_keeps_its_inner_corner():
     expected = {(0, 0), (20, 0), (20, 6), (6, 6), (6, 30), (0, 30)}
     assert {tuple(corner) for corner in found.tolist()} == expected
     assert stone.outline is stone.outline_within(TOLERANCE)
-    for tolerance in (0.0, TOLERANCE, 0.7):
+    for tolerance in (0.0, TOLERANCE, 0.5):
         np.testing.assert_array_equal(
             stone.outline_within(tolerance), stone_outline(mask, tolerance)
         )
@@ -91,11 +91,22 @@ def test_an_l_keeps_its_inner_corner():
         stone.outline[0, 0] = 1.0
 
 
-def test_corners_are_put_back_where_two_sides_meet_not_on_slopes():
-    """A slope of one pixel across for two up; only the corners at its foot and its head are."""
-    contour = _contour(np.tri(60, 30, dtype=bool)[np.arange(60) // 2])
-    mended = set(map(tuple, _mended(contour).tolist()))
-    assert mended - set(map(tuple, contour.tolist())) == {(0.0, 0.0), (30.0, 0.0)}
+@pytest.mark.parametrize("size", [40, 120, 360])
+def test_sides_are_straight_at_any_resolution(size):
+    """Outlines of triangles to octagons of pixels have their corners, and lie where they lie."""
+    rng, corners, away = np.random.default_rng(0), [], []
+    for count in range(3, 9):
+        angles = (np.arange(count) + rng.uniform(0.0, 0.4, count)) * 2.0 * np.pi / count
+        drawn = size * np.column_stack([0.7 * np.cos(angles), 0.5 * np.sin(angles)])
+        mask, left, bottom = rasterise_polygon(drawn)
+        stone = Stone(1, mask)
+        outline = stone.outline + np.array(stone.local_centroid) + (left, bottom)
+        truth = shapely.Polygon(drawn)
+        corners.append(len(outline) - count)
+        apart = shapely.Polygon(outline).symmetric_difference(truth)
+        away.append(apart.area / truth.length)
+    assert max(corners) <= 3
+    assert np.mean(away) < 0.12
 
 
 @repeatable(100)
@@ -130,12 +141,6 @@ def test_a_hole_moves_the_centroid_and_nothing_else(mask):
     )
 
 
-def test_the_tolerance_is_halved_until_nothing_crosses():
-    mask = pixels("###", "..#", "##.")
-    np.testing.assert_array_equal(stone_outline(mask, 1.4), stone_outline(mask, 0.7))
-    assert len(stone_outline(mask, 0.7)) < len(stone_outline(mask, 0.35))
-
-
 @pytest.mark.parametrize("flip", [(1, 1), (-1, 1), (1, -1), (-1, -1)])
 def test_of_several_pieces_the_largest_counts(flip):
     mask = pixels("##.......", "##.######", "...######", "...######")[:: flip[0], :: flip[1]]
@@ -158,7 +163,7 @@ def test_second_moments_are_those_of_the_pixels_and_turn_and_move_as_tensors_do(
 
 
 @pytest.mark.parametrize(
-    ("name", "mean_corners"), [("R", 4.0), ("PR", 33.0)], ids=["bricks", "rubble"]
+    ("name", "mean_corners"), [("R", 4.0), ("PR", 9.0)], ids=["bricks", "rubble"]
 )
 def test_published_stones(data_dir, name, mean_corners):
     """The stones of R are rectangles of pixels; those of PR are followed to a fraction of one."""
@@ -168,7 +173,7 @@ def test_published_stones(data_dir, name, mean_corners):
         check(stone.outline, stone.mask)
         shape = shapely.Polygon(stone.outline + np.array(stone.local_centroid))
         squares = shapely.Polygon(pixel_polygon(stone.mask))
-        assert shape.exterior.hausdorff_distance(squares.exterior) <= 0.75
+        assert shape.exterior.hausdorff_distance(squares.exterior) <= 0.36 + reach_px(TOLERANCE)
         assert area_and_centroid(stone.outline)[0] == pytest.approx(stone.area_px)
         corners.append(len(stone.outline))
     assert np.mean(corners) <= mean_corners

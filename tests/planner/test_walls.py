@@ -315,7 +315,7 @@ def test_walls_with_wedges_are_true_and_restored_as_they_were():
 
 def test_walls_that_are_no_whole_number_of_columns_take_stones_from_both_ends():
     # The last .45 px of the wall have no column, and stones at its end fill half of one there.
-    stones, site = scenes.rubble(2, 10), ds.Site.from_source(100.45, 36.0)
+    stones, site = scenes.rubble(4, 10), ds.Site.from_source(100.45, 36.0)
     result = ds.plan_wall(stones, 100.45, 36.0, seed=1, settings=scenes.greedy())
     check(result, stones, scenes.greedy(), site)
     assert result.wall.labels.shape == (36, 100)

@@ -43,13 +43,13 @@ WALLS = {
 LOOPS = {name for names in WALLS.values() for name in names}
 
 
-STONES = scenes.rubble(count=5)
+STONES = scenes.rubble(3, 5)
 WORKSHOP = Workshop.prepare(STONES, scenes.RUBBLE_SITE, scenes.greedy())
 
 
 def planner_of(budget, patience=12):
     settings = scenes.greedy({"search": {"budget": budget, "patience": patience, **SMALL}})
-    return Planner(STONES, scenes.RUBBLE_SITE, seed=8, settings=settings, workshop=WORKSHOP)
+    return Planner(STONES, scenes.RUBBLE_SITE, seed=5, settings=settings, workshop=WORKSHOP)
 
 
 def planned_wall(settings, **options):
@@ -99,7 +99,7 @@ def test_chains_go_on_from_planned_walls_that_promise_more_until_they_are_long()
 
 
 def test_the_first_wall_is_wedged_as_the_others_are():
-    planner = scenes.of_rubble(scenes.greedy({"search": {"budget": 2, **SMALL}}), seed=123)
+    planner = scenes.of_rubble(scenes.greedy({"search": {"budget": 2, **SMALL}}), seed=103)
     start = judged(planner)
     better = wedged(start, Yard.of(planner))
     assert better.merit > start.merit
@@ -184,7 +184,7 @@ def test_a_part_of_several_rounds_in_processes_is_a_search_with_a_smaller_budget
     with processes(2) as workers:
         again = searched(first(part[-1].walls, patience=1), workers)
         # Every task has a copy of the clock as it is when it is handed over.
-        timed = searched(first(9), workers, until=scenes.after_looks(135))[-1]
+        timed = searched(first(9), workers, until=scenes.after_looks(80))[-1]
     assert 1 < timed.walls < 9
     assert all(alike(a, b) for a, b in zip(again, part, strict=True))
     again = searched(first(timed.walls))[-1]
@@ -219,7 +219,7 @@ def test_an_interrupt_and_a_process_that_dies_keep_the_best_wall_so_far(error, m
                 raise error
 
     settings = scenes.greedy({"search": {"budget": 50, **SMALL}})
-    result = planned_wall(settings, seed=3, callbacks=Impatient())
+    result = planned_wall(settings, seed=5, callbacks=Impatient())
     assert [one.walls for one in told] == [walls for walls in (1, 2, 3, 5) if walls <= most]
     assert result.plan.settings["search"]["budget"] == most
     scenes.proven(result, STONES)
@@ -262,7 +262,7 @@ KEPT = scenes.greedy({"search": {"budget": 9, **SMALL}})
 def kept():
     """A plan, and what is told of it while it is made."""
     told = []
-    return planned_wall(KEPT, seed=3, choice=True, keep=told.append), told
+    return planned_wall(KEPT, seed=1, choice=True, keep=told.append), told
 
 
 def test_a_plan_that_is_kept_is_that_of_an_interrupt_and_leads_to_the_whole_one(kept):
@@ -278,7 +278,7 @@ def test_a_plan_that_is_kept_is_that_of_an_interrupt_and_leads_to_the_whole_one(
         group.stone_id for group in one.progress.best.groups
     ]
     for one in told[len(placed) + 1 :: 3]:
-        again = planned_wall(KEPT, seed=3, state=one.progress.state)
+        again = planned_wall(KEPT, seed=1, state=one.progress.state)
         assert again.plan == whole.plan
 
 

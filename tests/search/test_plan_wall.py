@@ -165,7 +165,7 @@ def begun(old, changes):
 
 
 def test_banned_stones_are_taken_out_with_what_falls_then():
-    old = scenes.of_rubble(scenes.greedy(), seed=2)
+    old = scenes.of_rubble(scenes.greedy(), seed=3)
     before, fell, stayed = scenes.ids(old), set(), set()
     for banned in before[::2]:
         planner, gone = begun(old, {"ban": [banned]})
@@ -230,7 +230,7 @@ def test_what_stands_out_further_than_now_allowed_is_taken_out():
 
 def test_outlines_are_those_of_this_search_whatever_those_of_the_plan_were():
     """They are packed as their poses, and would be others when they are built again."""
-    old = scenes.of_rubble(scenes.greedy({"settle": {"outline_px": 0.5}}), seed=1)
+    old = scenes.of_rubble(scenes.greedy({"settle": {"outline_px": 0.8}}), seed=7)
     planner, _ = begun(old, {"settle": scenes.greedy().as_dict()["settle"]})
     assert len(planner.build.actions) > 3
     assert {*scenes.outlines(planner)} - {*scenes.outlines(old)}
@@ -296,7 +296,7 @@ def half_of(planner):
 def test_stones_that_fall_in_rehearsals_are_taken_out_or_laid_elsewhere():
     careless = scenes.greedy({"search": {"budget": 2}, "settle": {"trials": 0}})
     site = Site.from_source(160, 100, 0.5)
-    planner = scenes.finish(Planner(scenes.ROUNDED, site, seed=2, settings=careless))
+    planner = scenes.finish(Planner(scenes.ROUNDED, site, seed=3, settings=careless))
     yard = Yard.of(planner)
     wall = FoundWall.of(planner).judged(yard, THOROUGH)
     assert wall.falls.first

@@ -66,7 +66,7 @@ def small_walls():
         PolygonSettings(count=8, width_px=28, height_px=18, noise=noise) for noise in (0.2, 0.4)
     )
     made = []
-    for kind, seed, scale in ((plain, 0, 0.5), (plain, 5, 0.5), (sharp, 4, 0.5), (rubble, 0, 1.0)):
+    for kind, seed, scale in ((sharp, 3, 0.5), (plain, 4, 0.5), (sharp, 8, 0.5), (rubble, 0, 1.0)):
         rng = np.random.default_rng(seed)
         generated = isinstance(kind, RubbleSettings)
         stones = rubble_stones(kind, rng) if generated else polygon_stones(kind, rng)
@@ -110,7 +110,8 @@ def test_a_wedge_is_added_in_the_order_of_construction(wall):
         assert after.placed.ids[at - len(before) : at] == tuple(before)
         assert after.placed.polygons.polygon(at).tolist() == place.corners.tolist()
         assert after.added == ((number, place),)
-        whole = lateral_resistance(model_of_outlines(after.placed))
+        touching = draft.limits.contact_px, draft.limits.setback
+        whole = lateral_resistance(model_of_outlines(after.placed, 0.58, *touching))
         assert after.resistance.value == pytest.approx(whole.value, abs=1e-7)
         for direction in ("left", "right"):
             side = getattr(after.resistance, direction)

@@ -15,7 +15,7 @@ from drystone.model.outline import stone_outline
 from drystone.model.outlines import Outlines
 from drystone.model.plan import WedgeStep
 from drystone.model.site import Site
-from drystone.model.stone import Stone
+from drystone.model.stone import OUTLINE_TOLERANCE_PX, Stone
 from drystone.search.plan_wall import plan_wall
 from drystone.settle.rest import placed_outline
 from drystone.settle.wedge import WedgeLimits
@@ -143,7 +143,10 @@ def problems(mask, outline, angle_deg=0.0):
     at = np.array([31.5, 12.25])
     step = replace(STONE_STEP, angle_deg=angle_deg)
     corners = placed_outline(outline, angle_deg, *at.tolist())
-    return [p.message for p in check_outline(step, Stone(SLAB_ID, mask), at, corners, 0.35)]
+    return [
+        p.message
+        for p in check_outline(step, Stone(SLAB_ID, mask), at, corners, OUTLINE_TOLERANCE_PX)
+    ]
 
 
 @repeatable(60)
@@ -171,9 +174,9 @@ def test_a_scaled_outline_is_named(mask, angle_deg, factor):
 def test_an_outline_beside_its_pixels_or_of_another_shape_is_named():
     brick, slim = np.ones((12, 20), bool), np.ones((10, 24), bool)
     outline = Stone(1, brick).outline
-    for shift in ((0.9, 0.0), (-0.9, 0.0), (0.0, 0.9), (0.0, -0.9)):
+    for shift in ((1.2, 0.0), (-1.2, 0.0), (0.0, 1.2), (0.0, -1.2)):
         (said,) = problems(brick, outline + shift)
-        assert "is 0.9 source px from the rim that was read; 0.5 are allowed" in said
+        assert "is 1.2 source px from the rim that was read; 0.9 are allowed" in said
         assert problems(brick, outline + 0.5 * np.array(shift)) == []
     assert len(problems(slim, outline)) == 1  # of the same area
 

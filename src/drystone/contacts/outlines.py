@@ -13,6 +13,7 @@ from drystone.kernels.outline import pixel_rings
 from drystone.kernels.polygons import Points
 from drystone.kernels.segments import REACH_PX, Line, fitted_lines, meeting_point, with_area
 from drystone.model.overlap import common_parts
+from drystone.model.stone import OUTLINE_TOLERANCE_PX
 from drystone.model.wall import Labels
 from drystone.statics.model import RigidBlockModel
 
@@ -20,14 +21,6 @@ Node = tuple[int, int]
 RingPiece = tuple[Node, ...]
 """Pixel corners (x, y) from one junction to the next, or around a stone that has none."""
 Fit = tuple[list[int], list[Line]]
-
-OUTLINE_TOLERANCE_PX = 0.75
-"""How far the contour may stay away from the line that is fitted to it.
-
-A straight joint moves by up to half a pixel when it is rasterised, and a fitted line by some more
-at its ends.  Smaller tolerances follow the steps of the grid: their slopes do not go away as the
-resolution grows, nor does what they do to the load multiplier.
-"""
 
 CONTACT_TOLERANCE = 0.1
 """Gaps and overlaps of outlines up to this are contacts."""

@@ -144,7 +144,8 @@ class BuiltWall(Heap):
 
     def with_burden(self, blocks: Iterable[int]) -> set[int]:
         """Return blocks and all that lies on them."""
-        return set(blocks).union(set(self.laid).difference(self.without(blocks).laid))
+        some = set(blocks)
+        return some.union(set(self.laid).difference(self.without(some).laid))
 
     def without(self, blocks: Iterable[int]) -> BuiltWall:
         """Take up blocks, and all that lies on them."""
@@ -167,7 +168,7 @@ class BuiltWall(Heap):
         wall: BuiltWall = copied(self, ())
         kept: list = []
         count: cython.Py_ssize_t = len(wall.ids)
-        laid: cython.Py_ssize_t = number_of(wall, block)
+        laid: cython.Py_ssize_t = wall.numbers.get(block, -1)
         beneath: cython.p_uchar = kept_flags(kept, count)
         for place in range(wall.size):
             number = wall.order[place]
@@ -349,7 +350,7 @@ def find_beds(wall):
         if bears_on and bears_on[0][0] <= built.x <= bears_on[len(bears_on) - 1][0]:
             # Else friction on the others holds it, as it came to rest there.
             touched = bears_on
-        rows = [(x, y, wall.numbers.get(below, -1), up) for x, y, below, up in touched]
+        rows = [(x, y, -1 if below < 0 else wall.numbers[below], up) for x, y, below, up in touched]
         wall.beds[number] = bed_of(rows, False)
     return 0
 

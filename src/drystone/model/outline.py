@@ -1,17 +1,29 @@
 """A stone as a simple polygon with the area and the centroid of its pixels (DESIGN 4.9)."""
 
 import math
+from collections.abc import Callable
+from itertools import pairwise
 
 import numpy as np
 import shapely
 from scipy import ndimage
 from skimage import measure
 
+from drystone.kernels.outline import pixel_rings
 from drystone.kernels.polygons import Points, area_and_centroid, turn
 from drystone.kernels.raster import Mask
+from drystone.kernels.segments import fitted_lines, meeting_point
 
-HALVINGS = 6
-"""How often the tolerance is halved before the contour is taken as it is."""
+FINER, ATTEMPTS = 0.8, 12
+"""By which factor, and how often, the tolerance of lines is made finer before the contour is taken
+as it is: where lines meet, the outline of a round stone is further away than they are."""
+
+SIDE = 3
+"""Sides so long, px, that meet at a right angle are no steps of a slope."""
+
+SMALL = 0.05
+"""Lines are no further from the pixels than this share of the root of the area: a stone of a few
+pixels keeps its corners."""
 
 FIT = 0.15
 """So much further than the tolerance a shift and a factor may take an outline from its contour,
@@ -32,17 +44,18 @@ def stone_outline(mask: Mask, tolerance_px: float) -> Points:
 
     The corners have x to the right and y up, are counter-clockwise and not closed; the polygon
     neither crosses nor touches itself, and no corner is repeated or on a line with its neighbours.
-    Every point of the contour is within :func:`reach_px` of it.
+    Every point of the contour is within :func:`reach_px` of it; its corners may be further out, by
+    half a pixel as a rule and a pixel at most but for spikes.
 
-    The contour at level 1/2 goes through the midpoints of pixel edges.  It cuts off every corner
-    of a pixel, so a brick would get eight corners: where the cut is between two sides along pixel
-    edges the corner (√2/4 px from the contour) is put back.  Steps of one pixel, of which slopes
-    consist, have no such sides.  Then the contour is simplified after Douglas and Peucker.  Where
-    that makes it cross or touch itself, or shift and factor then take it too far away, the
-    tolerance is halved, and in the end the contour is taken as it is.
+    The contour at level 1/2 goes through the midpoints of pixel edges, which a straight side leaves
+    by half a pixel and more.  So the outline does not follow them, which gave it a corner for every
+    step of the grid: few lines are fitted (:mod:`drystone.kernels.segments`), and its corners are
+    where they meet.  A side is then straight, and as long as it is, at any resolution.  Where the
+    outline crosses or touches itself, or is too far from the contour, lines are fitted with a finer
+    tolerance, and in the end the contour is taken as it is.
 
-    Pixels that touch at a corner only are joined there by a neck of √2/2 px, as they are one
-    stone when an image is read.
+    Pixels that touch at a corner only are joined there by one more, as they are one stone when an
+    image is read.
 
     At last the polygon is shifted and scaled about its centroid, by a factor of about 1 unless
     there are only a few pixels, so that its area and its centroid are those of the pixels.  A
@@ -54,26 +67,48 @@ def stone_outline(mask: Mask, tolerance_px: float) -> Points:
     quarter = min(range(4), key=lambda way: (ways[way].shape, ways[way].tobytes()))
     pixels = ways[quarter]
     contour, area_px = _contour(pixels), float(np.count_nonzero(pixels))
-    about_centroid = contour - np.array(centroid_of(pixels))
-    corners = _within(_mended(contour), about_centroid, area_px, tolerance_px)
+    ring = _from_furthest(max(pixel_rings(_joined(pixels)), key=len)[:-1])
+    nodes = np.vstack([ring, ring[:1]])
+    ends = [0, *_corners(nodes), len(ring)]
+
+    def lined(tolerance_px: float) -> Points:
+        parts = [
+            (nodes[first + cut], line)
+            for first, last in pairwise(ends)
+            for cut, line in zip(*fitted_lines(nodes[first : last + 1], tolerance_px), strict=False)
+        ]
+        lines = [line for _, line in parts]
+        return np.array([
+            meeting_point([lines[i - 1], line], node) for i, (node, line) in enumerate(parts)
+        ])  # fmt: skip
+
+    nearest = min(tolerance_px, SMALL * math.sqrt(area_px))
+    corners = _within(lined, contour - np.array(centroid_of(pixels)), area_px, nearest)
     return turn(corners, -90.0 * quarter)
 
 
 def drawn_outline(ring: Points, tolerance_px: float) -> Points:
     """Return a drawn outline, counter-clockwise, about its centroid, with no idle corners.
 
-    Area and centroid are its own.  What the tolerance leaves of the corners is what it leaves of a
-    contour of pixels (:func:`stone_outline`): those that a person drew all stay.
+    Area and centroid are its own.  Corners that half the tolerance needs all stay where a person
+    drew them (Douglas and Peucker): no grid has moved them.
     """
     area, *centre = area_and_centroid(ring)
-    about_centroid = ring - np.array(centre)
-    return _within(about_centroid, about_centroid, area, tolerance_px)
+    drawn = _from_furthest(ring - np.array(centre))
+    closed = np.vstack([drawn, drawn[:1]])
+
+    def simplified(tolerance_px: float) -> Points:
+        return np.asarray(measure.approximate_polygon(closed, 0.5 * tolerance_px)[:-1])
+
+    return _within(simplified, drawn, area, tolerance_px)
 
 
-def _within(ring: Points, contour: Points, area_px: float, tolerance_px: float) -> Points:
+def _within(
+    simplified: Callable[[float], Points], contour: Points, area_px: float, tolerance_px: float
+) -> Points:
     """Simplify a ring as long as it stays near its contour, which is about the centroid."""
-    for halving in range(HALVINGS):
-        corners = _without_straight_ones(_simplified(ring, tolerance_px / 2.0**halving))
+    for attempt in range(ATTEMPTS):
+        corners = _without_straight_ones(simplified(tolerance_px * FINER**attempt))
         if len(corners) > 2 and shapely.Polygon(corners).is_valid:
             fitted = _fitted(corners, area_px)
             if farthest_px(contour, fitted) <= reach_px(tolerance_px):
@@ -135,28 +170,29 @@ def _contour(mask: Mask) -> Points:
     return np.asarray(rings[largest] if areas[largest] > 0.0 else rings[largest][::-1])
 
 
-def _mended(contour: Points) -> Points:
-    """Add the corners of pixels that a contour cuts off between two sides along pixel edges."""
-    steps = np.roll(contour, -1, axis=0) - contour
-    slant = (steps != 0.0).all(axis=1)
-    before, after = np.roll(steps, 1, axis=0), np.roll(steps, -1, axis=0)
-    alone = slant & ~np.roll(slant, 1) & ~np.roll(slant, -1)
-    cut = np.flatnonzero(alone & (_cross(before, after) != 0.0))
-    corners = contour[cut] + 0.5 * before[cut]
-    # Both sides of a neck between pixels have the same corner: they stay apart.
-    _, place, uses = np.unique(corners, axis=0, return_inverse=True, return_counts=True)
-    once = uses[place.ravel()] == 1
-    return np.insert(contour, cut[once] + 1, corners[once], axis=0)
+def _joined(mask: Mask) -> Mask:
+    """Return some pixels with one more wherever two touch at a corner only."""
+    more = mask.copy()
+    for left, right in ((slice(-1), slice(1, None)), (slice(1, None), slice(-1))):
+        apart = ~more[:-1, right] & ~more[1:, left]
+        more[:-1, right] |= apart & more[:-1, left] & more[1:, right]
+    return more
 
 
-def _simplified(ring: Points, tolerance_px: float) -> Points:
-    """Leave out corners as long as the ring stays within the tolerance.
+def _corners(nodes: Points) -> list[int]:
+    """List where two sides along pixel edges meet, each of `SIDE` px or more: slopes have none."""
+    steps = np.diff(nodes, axis=0)
+    turns = 1 + np.flatnonzero((steps[1:] != steps[:-1]).any(axis=1))
+    runs = np.diff([0, *turns, len(steps)])
+    return [int(at) for at in turns[(runs[:-1] >= SIDE) & (runs[1:] >= SIDE)]]
 
-    It begins at the point that is furthest from the middle: that one stays in any case.
-    """
+
+def _from_furthest(ring: Points) -> Points:
+    """Let a ring begin at a point that is furthest from the middle, where there is a corner."""
     away = ring - ring.mean(axis=0)
-    ring = np.roll(ring, -int(np.argmax((away * away).sum(axis=1))), axis=0)
-    return np.asarray(measure.approximate_polygon(np.vstack([ring, ring[:1]]), tolerance_px)[:-1])
+    # Of points as far the highest: rounding does not decide.
+    far = np.lexsort((*ring.T, (away * away).sum(axis=1).round(6)))[-1]
+    return np.roll(ring, -int(far), axis=0)
 
 
 def _without_straight_ones(corners: Points) -> Points:

@@ -228,7 +228,7 @@ class _Work:
     @property
     def heap(self) -> list[_Stone]:
         """Stones that do not lie in the wall, the largest first: small ones find a place later."""
-        heap = [one for one in self.stones if one.id not in self.wall.laid]
+        heap = [one for one in self.stones if self.wall.get(one.id) is None]
         return sorted(heap, key=lambda one: -one.seen.size)
 
     def make_room(self, stone: _Stone) -> None:
@@ -253,7 +253,7 @@ class _Work:
         (_, real), *wedges = self._real[stone.id]
         for _ in range(TRIES):
             wall = self.wall.put(stone.pieces(stone.missed(aim.start, real), wedges))
-            rest = wall.laid.get(stone.id)
+            rest = wall.get(stone.id)
             if rest is not None:
                 # What lies near to where it came to rest stays: the rest is planned from there.
                 after = wall.loaded(stone.id)

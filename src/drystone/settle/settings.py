@@ -64,7 +64,7 @@ class SettleSettings(Ranged):
     """
 
     method: Method = "energy"
-    outline_px: float = ranged(0.35, above=0, most=0.5)
+    outline_px: float = ranged(0.75, above=0, most=1)
     clearance_px: float = ranged(0.01, least=1e-4, within=(0.25, "contact_px"))
     contact_px: float = ranged(0.1, least=0, most=0.5)
     setback: float = ranged(0.01, least=0, most=0.1)

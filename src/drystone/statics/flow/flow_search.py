@@ -221,6 +221,8 @@ class Search:
             starts.sort(key=lambda start: start.factor)  # the slower, the sooner it ends
             left = int(EFFORT / points**2)
         for start in starts:
+            if not left:
+                break
             rates = self._slip_rates(start, mechanism, rng)
             rounds, state = self._rounds(rates, min(settings.rounds, left))
             left, found = left - rounds, found or state is not None
