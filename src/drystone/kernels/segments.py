@@ -1,10 +1,14 @@
 """Straight pieces of a digitised line: how few lines it takes, fitted by least squares.
 
+Only sums, products, quotients and square roots: they are the same bits on every machine, as sines
+and solvers are not, and outlines decide which wall is planned.
+
 The contour of a label at level .5 passes through the midpoints of its pixel edges
 (`skimage.measure.find_contours` on the padded mask gives the same points).  Where pixel centres
 decide what is inside, a straight line lies within half a pixel of all midpoints.
 """
 
+import math
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -75,17 +79,23 @@ class _Chain:
         """Fit a line to the edges first ... last - 1 by total least squares."""
         count = last - first
         x, y, xx, xy, yy = ((self.sums[last] - self.sums[first]) / count).tolist()
-        xx, xy, yy = xx - x * x, xy - x * y, yy - y * y
-        chord = self.nodes[last] - self.nodes[first]
-        if max(abs(xx - yy), abs(xy)) > 1e-9:
-            angle = 0.5 * np.arctan2(2.0 * xy, xx - yy)
-            along = np.array([np.cos(angle), np.sin(angle)])
-            along[np.abs(along) < 1e-12] = 0.0
-            along = along if along @ chord >= 0.0 else -along
-        else:  # one edge, or no direction better than another
-            length = float(np.hypot(*chord))
-            along = chord / length if length > 0 else np.array([1.0, 0.0])
-        return Line(self.origin + np.array([x, y]), along)
+        wide, skew = (xx - x * x) - (yy - y * y), 2.0 * (xy - x * y)
+        along_x, along_y = (self.nodes[last] - self.nodes[first]).tolist()
+        if max(abs(wide), 0.5 * abs(skew)) > 1e-9:
+            # Half of the angle whose cosine and sine are as wide and skew.
+            spread = math.sqrt(wide * wide + skew * skew)
+            longer = math.sqrt((1.0 + abs(wide) / spread) / 2.0)
+            shorter = skew / spread / (2.0 * longer)
+            shorter = shorter if abs(shorter) > 1e-12 else 0.0
+            u, v = (longer, shorter) if wide >= 0.0 else (shorter, longer)
+            sense = 1.0 if u * along_x + v * along_y >= 0.0 else -1.0
+            along_x, along_y = sense * u, sense * v
+        elif along_x or along_y:  # one edge, or no direction better than another
+            length = math.sqrt(along_x * along_x + along_y * along_y)
+            along_x, along_y = along_x / length, along_y / length
+        else:
+            along_x = 1.0
+        return Line(self.origin + np.array([x, y]), np.array([along_x, along_y]))
 
     def fits(self, first: int, last: int, tolerance: float) -> bool:
         """Tell whether one line will do for the edges first ... last - 1."""
@@ -118,7 +128,7 @@ class _Chain:
         count = np.asarray(last - first, float)
         x, y, xx, xy, yy = (self.sums[last] - self.sums[first]).T / count
         xx, xy, yy = xx - x * x, xy - x * y, yy - y * y
-        least = (xx + yy - np.hypot(xx - yy, 2.0 * xy)) / 2.0
+        least = (xx + yy - np.sqrt((xx - yy) ** 2 + 4.0 * xy * xy)) / 2.0
         # The sums cancel: what is left below 1e-9 is rounding, not distance.
         return np.asarray(np.where(least > 1e-9, least, 0.0) * count)
 
@@ -129,14 +139,16 @@ def meeting_point(lines: list[Line], near: Points) -> Points:
     In the sense of least squares; a weak pull towards the pixel corner decides along lines of one
     direction.
     """
-    matrix, right = PULL * np.eye(2), np.zeros(2)
+    xx, xy, yy, x, y = PULL, 0.0, PULL, 0.0, 0.0
     for line in lines:
-        normal = np.array([-line.along[1], line.along[0]])
-        matrix += normal[:, None] * normal
-        right += normal * float(normal @ (line.point - near))
-    move = np.linalg.solve(matrix, right)
-    length = float(np.hypot(*move))
-    return np.asarray(near + move * min(1.0, REACH_PX / length) if length > 0 else near)
+        (along_x, along_y), (to_x, to_y) = line.along.tolist(), (line.point - near).tolist()
+        away = along_x * to_y - along_y * to_x
+        xx, xy, yy = xx + along_y * along_y, xy - along_x * along_y, yy + along_x * along_x
+        x, y = x - along_y * away, y + along_x * away
+    whole = xx * yy - xy * xy
+    x, y = (yy * x - xy * y) / whole, (xx * y - xy * x) / whole
+    shorter = min(1.0, REACH_PX / max(math.sqrt(x * x + y * y), REACH_PX))
+    return np.array([near[0] + shorter * x, near[1] + shorter * y])
 
 
 def with_area(line: Points, nodes: Points, more: float = 0.0) -> Points:
