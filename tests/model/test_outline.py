@@ -7,6 +7,7 @@ import pytest
 import shapely
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy import ndimage
 
 from drystone.io.read_stones import read_stones
 from drystone.kernels.outline import pixel_polygon, rasterise_polygon
@@ -67,7 +68,9 @@ def test_thin_and_touching_pixels_have_outlines(name, tolerance):
 
 
 @pytest.mark.parametrize("tolerance", TOLERANCES[:3])
-@pytest.mark.parametrize(("width", "height"), [(2, 2), (2, 9), (3, 2), (36, 12), (200, 35)])
+@pytest.mark.parametrize(
+    ("width", "height"), [(2, 2), (1, 4), (40, 1), (2, 9), (3, 2), (36, 12), (200, 35)]
+)
 def test_a_brick_is_its_rectangle(width, height, tolerance):
     corners = stone_outline(np.ones((height, width), bool), tolerance)
     x, y = width / 2, height / 2
@@ -129,6 +132,21 @@ def test_outlines_go_nowhere_else(mask, tolerance):
     squares = shapely.LinearRing(pixel_polygon(mask))
     assert outline.hausdorff_distance(squares) <= 2.0**0.5 / 4 + reach_px(tolerance)
     assert squares.hausdorff_distance(outline) <= 2.0**0.5 / 4 + reach_px(tolerance)
+
+
+@pytest.mark.parametrize("rough", [0.7, 1.5, 4.0])
+def test_ragged_stones_have_outlines(rough):
+    """Finer lines where they must be, and the contour where none will do."""
+    rng = np.random.default_rng(3)
+    y, x = np.mgrid[-1:1:120j, -1:1:160j]
+    noise = ndimage.gaussian_filter(rng.normal(size=x.shape), rough)
+    mask = solid(0.7 - np.hypot(x, y) + 0.2 * noise / noise.std() > 0.0)
+    outline = stone_outline(mask, TOLERANCE)
+    check(outline, mask)
+    edges = naive.rim(mask)
+    ring = shapely.LinearRing(outline + np.array(Stone(1, mask).local_centroid))
+    assert max(ring.distance(edge) for edge in edges) <= reach_px(TOLERANCE)
+    assert len(outline) < len(edges) * (0.6 if rough < 1.0 else 0.2)
 
 
 def test_outlines_are_the_same_bits_on_every_machine():

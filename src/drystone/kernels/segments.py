@@ -8,12 +8,25 @@ The contour of a label at level .5 passes through the midpoints of its pixel edg
 decide what is inside, a straight line lies within half a pixel of all midpoints.
 """
 
+from __future__ import annotations
+
 import math
-from dataclasses import dataclass
+from collections.abc import Iterable
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+
+try:
+    import cython
+except ImportError:
+    from drystone.kernels import shim as cython
+
+if not cython.compiled:
+    from math import sqrt
+
+    from drystone.kernels.lists import doubles
 
 Points = NDArray[np.float64]
 
@@ -30,17 +43,13 @@ REACH_PX = 1.0
 """A corner may lie this far from the pixel corner where two pieces meet."""
 
 
-@dataclass(frozen=True, eq=False)
-class Line:
+class Line(NamedTuple):
     """A fitted line: a point on it, and its unit vector in the sense of the contour."""
 
-    point: Points
-    along: Points
-
-    def distance(self, points: Points) -> Points:
-        """Return how far points lie to the left of it."""
-        x, y = (points - self.point).T
-        return np.asarray(self.along[0] * y - self.along[1] * x)
+    x: float
+    y: float
+    along_x: float
+    along_y: float
 
 
 def fitted_lines(nodes: Points, tolerance: float) -> tuple[list[int], list[Line]]:
@@ -50,105 +59,132 @@ def fitted_lines(nodes: Points, tolerance: float) -> tuple[list[int], list[Line]
     the indices of the nodes between pieces, with 0 and n.  From its start every piece is as long as
     it can be; then every cut moves to where the two pieces beside it fit best.
     """
-    chain = _Chain(nodes)
-    cuts = [0]
-    while cuts[-1] < chain.count:
-        cuts.append(chain.furthest(cuts[-1], tolerance))
+    chain: Chain = Chain(nodes)
+    cuts, last = [0], 0
+    while last < chain.count:
+        last = furthest(chain, last, tolerance)
+        cuts.append(last)
     for _ in range(PASSES):
         before = cuts.copy()
         for i in range(1, len(cuts) - 1):
-            cuts[i] = chain.best_cut(cuts[i - 1], cuts[i], cuts[i + 1], tolerance)
+            cuts[i] = best_cut(chain, cuts[i - 1], cuts[i], cuts[i + 1], tolerance)
         if cuts == before:
             break
-    return cuts, [chain.line(a, b) for a, b in pairwise(cuts)]
+    lines = []
+    for first, last in pairwise(cuts):
+        fit(chain, first, last)
+        lines.append(
+            Line(nodes[0, 0] + chain.x, nodes[0, 1] + chain.y, chain.along_x, chain.along_y)
+        )
+    return cuts, lines
 
 
-class _Chain:
-    """Midpoints of the edges of a chain and sums that make fits of any piece quick."""
+@cython.cclass
+class Chain:
+    """Midpoints of the edges of a chain, sums that make fits of any piece quick, and a fit."""
 
     def __init__(self, nodes: Points) -> None:
-        self.nodes = nodes
-        self.count = len(nodes) - 1
-        self.origin = nodes[0]
-        self.middle = (nodes[1:] + nodes[:-1]) / 2.0 - self.origin
-        x, y = self.middle.T
+        nodes = np.ascontiguousarray(nodes)
+        middle = (nodes[1:] + nodes[:-1]) / 2.0 - nodes[0]
+        x, y = middle.T
+        # All are quarters of whole numbers, which have no rounding.
         terms = np.column_stack([x, y, x * x, x * y, y * y])
-        self.sums = np.vstack([np.zeros(5), np.cumsum(terms, axis=0)])
-
-    def line(self, first: int, last: int) -> Line:
-        """Fit a line to the edges first ... last - 1 by total least squares."""
-        count = last - first
-        x, y, xx, xy, yy = ((self.sums[last] - self.sums[first]) / count).tolist()
-        wide, skew = (xx - x * x) - (yy - y * y), 2.0 * (xy - x * y)
-        along_x, along_y = (self.nodes[last] - self.nodes[first]).tolist()
-        if max(abs(wide), 0.5 * abs(skew)) > 1e-9:
-            # Half of the angle whose cosine and sine are as wide and skew.
-            spread = math.sqrt(wide * wide + skew * skew)
-            longer = math.sqrt((1.0 + abs(wide) / spread) / 2.0)
-            shorter = skew / spread / (2.0 * longer)
-            shorter = shorter if abs(shorter) > 1e-12 else 0.0
-            u, v = (longer, shorter) if wide >= 0.0 else (shorter, longer)
-            sense = 1.0 if u * along_x + v * along_y >= 0.0 else -1.0
-            along_x, along_y = sense * u, sense * v
-        elif along_x or along_y:  # one edge, or no direction better than another
-            length = math.sqrt(along_x * along_x + along_y * along_y)
-            along_x, along_y = along_x / length, along_y / length
-        else:
-            along_x = 1.0
-        return Line(self.origin + np.array([x, y]), np.array([along_x, along_y]))
-
-    def fits(self, first: int, last: int, tolerance: float) -> bool:
-        """Tell whether one line will do for the edges first ... last - 1."""
-        line = self.line(first, last)
-        away = line.distance(self.middle[first:last] + self.origin)
-        return bool(np.abs(away).max() <= tolerance + 1e-9)
-
-    def furthest(self, first: int, tolerance: float) -> int:
-        """Return the end of the longest piece from `first` that is found by doubling."""
-        good, step = first + 1, 1
-        while good < self.count and self.fits(first, min(good + step, self.count), tolerance):
-            good = min(good + step, self.count)
-            step *= 2
-        while step > 1:
-            step //= 2
-            if good + step <= self.count and self.fits(first, good + step, tolerance):
-                good += step
-        return good
-
-    def best_cut(self, first: int, cut: int, last: int, tolerance: float) -> int:
-        """Return where the pieces before and after a cut have the least squared distances."""
-        places = np.arange(first + 1, last)
-        best = int(places[np.argmin(self._misfit(first, places) + self._misfit(places, last))])
-        if self.fits(first, best, tolerance) and self.fits(best, last, tolerance):
-            return best
-        return cut
-
-    def _misfit(self, first: int | NDArray[np.int64], last: int | NDArray[np.int64]) -> Points:
-        """Return the sums of squared distances of pieces from their lines."""
-        count = np.asarray(last - first, float)
-        x, y, xx, xy, yy = (self.sums[last] - self.sums[first]).T / count
-        xx, xy, yy = xx - x * x, xy - x * y, yy - y * y
-        least = (xx + yy - np.sqrt((xx - yy) ** 2 + 4.0 * xy * xy)) / 2.0
-        # The sums cancel: what is left below 1e-9 is rounding, not distance.
-        return np.asarray(np.where(least > 1e-9, least, 0.0) * count)
+        sums = np.vstack([np.zeros(5), np.cumsum(terms, axis=0)])
+        self.kept = (nodes, middle, sums)
+        self.count = len(middle)
+        self.nodes, self.middle, self.sums = doubles(nodes), doubles(middle), doubles(sums)
 
 
-def meeting_point(lines: list[Line], near: Points) -> Points:
+def fit(chain, first, last):
+    """Fit a line to the edges first ... last - 1; return the sum of their squared distances."""
+    count: cython.double = last - first
+    a: cython.Py_ssize_t = 5 * first
+    b: cython.Py_ssize_t = 5 * last
+    x: cython.double = (chain.sums[b] - chain.sums[a]) / count
+    y: cython.double = (chain.sums[b + 1] - chain.sums[a + 1]) / count
+    xx: cython.double = (chain.sums[b + 2] - chain.sums[a + 2]) / count - x * x
+    xy: cython.double = (chain.sums[b + 3] - chain.sums[a + 3]) / count - x * y
+    yy: cython.double = (chain.sums[b + 4] - chain.sums[a + 4]) / count - y * y
+    wide: cython.double = xx - yy
+    skew: cython.double = 2.0 * xy
+    spread: cython.double = sqrt(wide * wide + skew * skew)
+    along_x: cython.double = chain.nodes[2 * last] - chain.nodes[2 * first]
+    along_y: cython.double = chain.nodes[2 * last + 1] - chain.nodes[2 * first + 1]
+    if max(abs(wide), 0.5 * abs(skew)) > 1e-9:
+        # Half of the angle whose cosine and sine are as wide and skew.
+        longer: cython.double = sqrt((1.0 + abs(wide) / spread) / 2.0)
+        shorter: cython.double = skew / spread / (2.0 * longer)
+        shorter = shorter if abs(shorter) > 1e-12 else 0.0
+        u: cython.double = longer if wide >= 0.0 else shorter
+        v: cython.double = shorter if wide >= 0.0 else longer
+        sense: cython.double = 1.0 if u * along_x + v * along_y >= 0.0 else -1.0
+        along_x, along_y = sense * u, sense * v
+    elif along_x or along_y:  # one edge, or no direction better than another
+        length: cython.double = sqrt(along_x * along_x + along_y * along_y)
+        along_x, along_y = along_x / length, along_y / length
+    else:
+        along_x = 1.0
+    chain.x, chain.y, chain.along_x, chain.along_y = x, y, along_x, along_y
+    least: cython.double = (xx + yy - spread) / 2.0
+    # The sums cancel: what is left below 1e-9 is rounding, not distance.
+    return least * count if least > 1e-9 else 0.0
+
+
+def fits(chain, first, last, tolerance):
+    """Tell whether one line will do for the edges first ... last - 1."""
+    fit(chain, first, last)
+    for i in range(2 * first, 2 * last, 2):
+        x: cython.double = chain.middle[i] - chain.x
+        y: cython.double = chain.middle[i + 1] - chain.y
+        if abs(chain.along_x * y - chain.along_y * x) > tolerance + 1e-9:
+            return False
+    return True
+
+
+def furthest(chain, first, tolerance):
+    """Return the end of the longest piece from `first` that is found by doubling."""
+    good: cython.Py_ssize_t = first + 1
+    step: cython.Py_ssize_t = 1
+    while good < chain.count and fits(chain, first, min(good + step, chain.count), tolerance):
+        good = min(good + step, chain.count)
+        step *= 2
+    while step > 1:
+        step //= 2
+        if good + step <= chain.count and fits(chain, first, good + step, tolerance):
+            good += step
+    return good
+
+
+def best_cut(chain, first, cut, last, tolerance):
+    """Return where the pieces before and after a cut have the least squared distances."""
+    best: cython.Py_ssize_t = cut
+    least: cython.double = math.inf
+    for place in range(first + 1, last):
+        found: cython.double = fit(chain, first, place) + fit(chain, place, last)
+        if found < least:
+            best, least = place, found
+    if fits(chain, first, best, tolerance) and fits(chain, best, last, tolerance):
+        return best
+    return cut
+
+
+def meeting_point(lines: Iterable[Line], near: Points) -> Points:
     """Return the point closest to several lines, at most REACH_PX from the pixel corner near it.
 
     In the sense of least squares; a weak pull towards the pixel corner decides along lines of one
     direction.
     """
     xx, xy, yy, x, y = PULL, 0.0, PULL, 0.0, 0.0
+    near_x, near_y = near.tolist()
     for line in lines:
-        (along_x, along_y), (to_x, to_y) = line.along.tolist(), (line.point - near).tolist()
-        away = along_x * to_y - along_y * to_x
+        along_x, along_y = line.along_x, line.along_y
+        away = along_x * (line.y - near_y) - along_y * (line.x - near_x)
         xx, xy, yy = xx + along_y * along_y, xy - along_x * along_y, yy + along_x * along_x
         x, y = x - along_y * away, y + along_x * away
     whole = xx * yy - xy * xy
     x, y = (yy * x - xy * y) / whole, (xx * y - xy * x) / whole
     shorter = min(1.0, REACH_PX / max(math.sqrt(x * x + y * y), REACH_PX))
-    return np.array([near[0] + shorter * x, near[1] + shorter * y])
+    return np.array([near_x + shorter * x, near_y + shorter * y])
 
 
 def with_area(line: Points, nodes: Points, more: float = 0.0) -> Points:

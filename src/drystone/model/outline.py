@@ -1,22 +1,29 @@
 """A stone as a simple polygon with the area and the centroid of its pixels (DESIGN 4.9)."""
 
 import math
-from collections.abc import Callable
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 import shapely
+from numpy.typing import NDArray
 from scipy import ndimage
+from scipy.spatial import cKDTree
 from skimage import measure
 
 from drystone.kernels.outline import pixel_rings
 from drystone.kernels.polygons import Points, area_and_centroid, turn
 from drystone.kernels.raster import Mask
-from drystone.kernels.segments import fitted_lines, meeting_point
+from drystone.kernels.segments import Line, fitted_lines, meeting_point
 
 FINER, ATTEMPTS = 0.8, 12
-"""By which factor, and how often, the tolerance of lines is made finer before the contour is taken
-as it is: where lines meet, the outline of a round stone is further away than they are."""
+"""By which factor a tolerance is made finer; and how often for a drawn outline."""
+
+ROUNDS, NEIGHBOURS = 16, 3
+"""How often lines are fitted finer at most, and how far beside those that are straight already."""
+
+SAME_PX = 1e-3
+"""What is so near a line is on it."""
 
 SIDE = 3
 """Sides so long, px, that meet at a right angle are no steps of a slope."""
@@ -44,15 +51,15 @@ def stone_outline(mask: Mask, tolerance_px: float) -> Points:
 
     The corners have x to the right and y up, are counter-clockwise and not closed; the polygon
     neither crosses nor touches itself, and no corner is repeated or on a line with its neighbours.
-    Every point of the contour is within :func:`reach_px` of it; its corners may be further out, by
-    half a pixel as a rule and a pixel at most but for spikes.
+    Every point of the contour is within :func:`reach_px` of it; its corners may be further out, up
+    to a pixel from the corner of the grid that is near them.
 
     The contour at level 1/2 goes through the midpoints of pixel edges, which a straight side leaves
     by half a pixel and more.  So the outline does not follow them, which gave it a corner for every
     step of the grid: few lines are fitted (:mod:`drystone.kernels.segments`), and its corners are
-    where they meet.  A side is then straight, and as long as it is, at any resolution.  Where the
-    outline crosses or touches itself, or is too far from the contour, lines are fitted with a finer
-    tolerance, and in the end the contour is taken as it is.
+    where they meet.  A side is then straight, and as long as it is, at any resolution.  Lines where
+    the outline crosses or touches itself, or is too far from the contour, are fitted with a finer
+    tolerance; where that does not do, the contour is taken as it is.
 
     Pixels that touch at a corner only are joined there by one more, as they are one stone when an
     image is read.
@@ -67,24 +74,96 @@ def stone_outline(mask: Mask, tolerance_px: float) -> Points:
     quarter = min(range(4), key=lambda way: (ways[way].shape, ways[way].tobytes()))
     pixels = ways[quarter]
     contour, area_px = _contour(pixels), float(np.count_nonzero(pixels))
+    nearest = min(tolerance_px, SMALL * math.sqrt(area_px))
+    corners = _lined(pixels, contour, area_px, nearest)
+    if corners is None:
+        corners = _fitted(_without_straight_ones(contour), area_px)
+    return turn(corners, -90.0 * quarter)
+
+
+def _lined(pixels: Mask, contour: Points, area_px: float, tolerance_px: float) -> Points | None:
+    """Return the outline of lines that are fitted finer wherever they must; None if none will do.
+
+    That is where the outline crosses itself, or it and the contour are too far apart: where lines
+    meet, the outline of a round stone is further away than they are.
+    """
     ring = _from_furthest(max(pixel_rings(_joined(pixels)), key=len)[:-1])
     nodes = np.vstack([ring, ring[:1]])
-    ends = [0, *_corners(nodes), len(ring)]
-
-    def lined(tolerance_px: float) -> Points:
-        parts = [
-            (nodes[first + cut], line)
-            for first, last in pairwise(ends)
-            for cut, line in zip(*fitted_lines(nodes[first : last + 1], tolerance_px), strict=False)
-        ]
-        lines = [line for _, line in parts]
-        return np.array([
-            meeting_point([lines[i - 1], line], node) for i, (node, line) in enumerate(parts)
+    edges = cKDTree((nodes[1:] + nodes[:-1]) / 2.0).query(contour)[1]
+    points = shapely.points(contour - centroid_of(pixels))
+    pieces = [
+        piece
+        for first, last in pairwise(sorted({0, *_corners(ring), len(ring)}))
+        for piece in _cut(nodes, first, last, tolerance_px)
+    ]
+    for _ in range(ROUNDS):
+        begins = np.array([piece.first for piece in pieces])
+        corners = np.array([
+            meeting_point((pieces[i - 1].line, piece.line), nodes[piece.first])
+            for i, piece in enumerate(pieces)
         ])  # fmt: skip
+        kept = _without_straight_ones(corners)
+        amiss = np.ones(len(pieces), bool)
+        area, *centre = area_and_centroid(corners)
+        if len(kept) > 2 and area > 0.0:
+            corners = (corners - centre) * math.sqrt(area_px / area)
+            sides = shapely.linestrings(np.stack([corners, np.roll(corners, -1, axis=0)], axis=1))
+            if not shapely.Polygon(kept).is_valid:
+                amiss = _crossing(sides)
+            else:
+                side = np.searchsorted(begins, edges, "right") - 1
+                beside = [sides[(side + i) % len(sides)] for i in (-1, 0, 1)]
+                far = np.min(shapely.distance(points, beside), axis=0) > reach_px(tolerance_px)
+                amiss = np.bincount(side[far], minlength=len(sides)) > 0
+                if not amiss.any():
+                    return _fitted(kept, area_px)
+        finer = _finer(nodes, pieces, amiss)
+        for _ in range(NEIGHBOURS):
+            if len(finer) > len(pieces):
+                break
+            amiss |= np.roll(amiss, 1) | np.roll(amiss, -1)
+            finer = _finer(nodes, pieces, amiss)
+        if len(finer) == len(pieces):
+            break
+        pieces = finer
+    return None
 
-    nearest = min(tolerance_px, SMALL * math.sqrt(area_px))
-    corners = _within(lined, contour - np.array(centroid_of(pixels)), area_px, nearest)
-    return turn(corners, -90.0 * quarter)
+
+class _Piece(NamedTuple):
+    """A piece of a ring of pixel edges, from one node to another, and its line."""
+
+    first: int
+    last: int
+    line: Line
+
+
+def _finer(nodes: Points, pieces: list[_Piece], amiss: NDArray[np.bool_]) -> list[_Piece]:
+    """Cut pieces that are amiss where a finer tolerance asks for it first."""
+    found = []
+    for i, (first, last, (x, y, along_x, along_y)) in enumerate(pieces):
+        worst = 0.0
+        if amiss[i]:
+            to = (nodes[first + 1 : last + 1] + nodes[first:last]) / 2.0 - (x, y)
+            worst = FINER * float(np.abs(along_x * to[:, 1] - along_y * to[:, 0]).max())
+        found += _cut(nodes, first, last, worst) if worst > SAME_PX else [pieces[i]]
+    return found
+
+
+def _cut(nodes: Points, first: int, last: int, tolerance_px: float) -> list[_Piece]:
+    """Cut a part of a ring into pieces of few lines."""
+    cuts, lines = fitted_lines(nodes[first : last + 1], tolerance_px)
+    return [
+        _Piece(first + a, first + b, line)
+        for (a, b), line in zip(pairwise(cuts), lines, strict=True)
+    ]
+
+
+def _crossing(sides: NDArray[np.object_]) -> NDArray[np.bool_]:
+    """Say which sides of a polygon meet others than the two beside them; all when none does."""
+    one, other = shapely.STRtree(sides).query(sides, predicate="intersects")
+    apart = (one - other) % len(sides)
+    found = np.bincount(one[(apart > 1) & (apart < len(sides) - 1)], minlength=len(sides)) > 0
+    return found if found.any() else ~found
 
 
 def drawn_outline(ring: Points, tolerance_px: float) -> Points:
@@ -96,24 +175,14 @@ def drawn_outline(ring: Points, tolerance_px: float) -> Points:
     area, *centre = area_and_centroid(ring)
     drawn = _from_furthest(ring - np.array(centre))
     closed = np.vstack([drawn, drawn[:1]])
-
-    def simplified(tolerance_px: float) -> Points:
-        return np.asarray(measure.approximate_polygon(closed, 0.5 * tolerance_px)[:-1])
-
-    return _within(simplified, drawn, area, tolerance_px)
-
-
-def _within(
-    simplified: Callable[[float], Points], contour: Points, area_px: float, tolerance_px: float
-) -> Points:
-    """Simplify a ring as long as it stays near its contour, which is about the centroid."""
     for attempt in range(ATTEMPTS):
-        corners = _without_straight_ones(simplified(tolerance_px * FINER**attempt))
+        simplified = measure.approximate_polygon(closed, 0.5 * tolerance_px * FINER**attempt)[:-1]
+        corners = _without_straight_ones(simplified)
         if len(corners) > 2 and shapely.Polygon(corners).is_valid:
-            fitted = _fitted(corners, area_px)
-            if farthest_px(contour, fitted) <= reach_px(tolerance_px):
+            fitted = _fitted(corners, area)
+            if farthest_px(drawn, fitted) <= reach_px(tolerance_px):
                 return fitted
-    return _fitted(_without_straight_ones(contour), area_px)
+    return _fitted(_without_straight_ones(drawn), area)
 
 
 def reach_px(tolerance_px: float) -> float:
@@ -176,15 +245,22 @@ def _joined(mask: Mask) -> Mask:
     for left, right in ((slice(-1), slice(1, None)), (slice(1, None), slice(-1))):
         apart = ~more[:-1, right] & ~more[1:, left]
         more[:-1, right] |= apart & more[:-1, left] & more[1:, right]
-    return more
+    # One more may touch others.
+    return more if (more == mask).all() else _joined(more)
 
 
-def _corners(nodes: Points) -> list[int]:
-    """List where two sides along pixel edges meet, each of `SIDE` px or more: slopes have none."""
-    steps = np.diff(nodes, axis=0)
-    turns = 1 + np.flatnonzero((steps[1:] != steps[:-1]).any(axis=1))
-    runs = np.diff([0, *turns, len(steps)])
-    return [int(at) for at in turns[(runs[:-1] >= SIDE) & (runs[1:] >= SIDE)]]
+def _corners(ring: Points) -> list[int]:
+    """List where two sides along pixel edges meet, each of `SIDE` px or more: slopes have none.
+
+    So do the ends of what is thinner, between two such sides: no slope turns back.
+    """
+    steps = np.roll(ring, -1, axis=0) - ring
+    before = np.roll(steps, 1, axis=0)
+    senses = _cross(before, steps)
+    turns = np.flatnonzero(senses)
+    long = np.diff([*turns, turns[0] + len(ring)]) >= SIDE
+    back = np.roll(long, 1) & np.roll(long, -1) & (senses[turns] == np.roll(senses[turns], -1))
+    return [int(at) for at in turns[(long & np.roll(long, 1)) | back | np.roll(back, 1)]]
 
 
 def _from_furthest(ring: Points) -> Points:
