@@ -143,12 +143,9 @@ def extra(module: str, does: str, where: str, name: str, code: str = "E305", cur
 
 def not_written(error: OSError) -> PlanError:
     """Return the error with a code (E206) of a file that the system does not write."""
-    return PlanError(
-        "E206",
-        f"the file cannot be written ({error.strerror or error}).",
-        where=os.fspath(error.filename or ""),
-        cure="Give a folder that exists, has room and may be written to.",
-    )
+    what = f"the file cannot be written ({error.strerror or error})."
+    cure = "Give a folder that exists, has room and may be written to."
+    return PlanError("E206", what, where=os.fspath(error.filename or ""), cure=cure)
 
 
 CODES = {
@@ -325,5 +322,6 @@ CODES = {
     "W304": "Pixels of a stone lie apart from it; all pixels of an id are one rigid block.",
     "W305": "Stones have fewer than two contact points.",
     "W306": "A block model gives the friction of blocks that do not touch.",
+    "W308": "Drawn stones lie in each other, deeper than edges bear.",
 }
 """Every code, and what it means in one sentence; docs/errors.md has more, and the cures."""

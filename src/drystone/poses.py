@@ -69,12 +69,9 @@ def orientation_step_deg(orientations: str) -> float | None:
     except ValueError:
         step = math.nan
     if not orientations.endswith("deg") or not 0.5 <= step <= 360:
-        raise UsageError(
-            "E122",
-            f"{orientations!r} is not a set of orientations.",
-            where="--orientations",
-            cure="Use sf, quarter, or a step from 0.5deg to 360deg, such as 10deg.",
-        )
+        what = f"{orientations!r} is not a set of orientations."
+        cure = "Use sf, quarter, or a step from 0.5deg to 360deg, such as 10deg."
+        raise UsageError("E122", what, where="--orientations", cure=cure)
     return step
 
 

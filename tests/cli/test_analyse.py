@@ -304,6 +304,20 @@ def test_gaps_are_looked_for_and_closed_and_that_is_said(tmp_path, run):
     assert all(f"\n{name} " in lines for name in ("friction", "gaps", "head joints", "size"))
 
 
+@pytest.mark.parametrize("deep", [0.05, 0.2, 2.0])
+def test_drawn_stones_that_lie_in_each_other_are_named(tmp_path, run, deep):
+    """By no more than a tenth of a pixel they bear; else it is said why they do not."""
+    drawn = {1: box(20, 250, 100, 50), 2: box(40, 200 + deep, 50, 50)}
+    shapes = [{"label": str(i), "points": list(map(list, at))} for i, at in drawn.items()]
+    content = {"shapes": shapes, "imageHeight": 300, "imageWidth": 200}
+    path = tmp_path / "drawn.json"
+    path.write_text(json.dumps(content), encoding="utf-8")
+    ran = run("analyse", path, "--associative-only")
+    assert (ran.code, "W308" in ran.err) == ((0, False) if deep < 0.1 else (5, True))
+    assert (f"1 and 2 by {deep:.2g} px" in ran.err) == (deep > 0.1)
+    assert run("analyse", path, "--close-gaps", "auto", "--associative-only").code == 0
+
+
 def test_a_stone_in_the_air_stays_there_whatever_gaps_are_closed(tmp_path, run):
     labels, wall = np.zeros((90, 60), np.uint32), tmp_path / "air.png"
     labels[60:, :30], labels[60:, 30:], labels[:20, 10:50] = 1, 2, 3

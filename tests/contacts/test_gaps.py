@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
+from scipy import ndimage
 
 from drystone.contacts import gaps
 from drystone.contacts.blocks import model_from_labels
@@ -107,7 +108,8 @@ def test_closing_keeps_stones_and_joins_only_those_within_reach(labels, reach):
     for row, col in np.argwhere(closed != labels).tolist():
         others = closed[:height].copy()  # a hole may lie between gaps that are closed
         others[row, col] = 0
-        assert lies_between(stones, row, col) or lies_between(others, row, col)
+        hole = ndimage.binary_fill_holes(others > 0)[row, col]
+        assert hole or lies_between(stones, row, col) or lies_between(others, row, col)
     for one, other in pairs(model_from_labels(closed).model):
         if other != GROUND:
             assert distance(labels, one, other) <= reach
@@ -182,6 +184,17 @@ def test_a_sweep_finds_from_where_a_wall_stands(alphas, chosen, first, steady):
         low, high = sweep.within() or (0.0, 0.0)
         assert low == pytest.approx(known[chosen])
         assert high <= 1.1 * low
+
+
+@pytest.mark.parametrize("usual", [20.0, 90.0, 180.0, 400.0])
+def test_the_narrowest_steady_width_does_not_depend_on_the_resolution(usual):
+    """Where more joints close, a wall bears more: what was steady before is right."""
+    step = max(1, round(usual / 60))
+    drawn = gaps.gap_sweep(answers({0: 0.33, 4 * step: 0.4, 5 * step: 0.5}), usual)
+    assert (drawn.chosen_px, drawn.steady) == (0, True)
+    assert drawn.within() == (0.33, 0.33)
+    opened = gaps.gap_sweep(answers({0: None, step: 0.33, 6 * step: 0.4}), usual)
+    assert (opened.chosen_px, opened.steady) == (step, True)
 
 
 def test_widths_that_are_tried_grow_with_the_stones():

@@ -209,14 +209,14 @@ class GapSweep:
     chosen_px: int  # 0 to leave the gaps open
     stands_from_px: int | None  # None when it stands with none of the widths
     steady: bool  # whether the load multiplier hardly changes from the chosen width on
+    upto_px: float  # as far as that is asked
 
     def within(self) -> tuple[float, float] | None:
         """Return the least and the greatest load multiplier from the chosen width on."""
-        upto = _beyond(self.chosen_px)
         found = [
             alpha
             for width, _, alpha in self.tried
-            if alpha is not None and self.chosen_px <= width <= upto
+            if alpha is not None and self.chosen_px <= width <= self.upto_px
         ]
         return (min(found), max(found)) if found else None
 
@@ -241,25 +241,25 @@ def gap_sweep(analyse: Callable[[int], LateralResistance], usual_px: float) -> G
         if width > max(8.0, usual_px / 2.0):
             break
         at(width)
-        if _steady(tried) is not None:
+        if _steady(tried, step) is not None:
             break
     fallen = max((width for width, (stands, _) in tried.items() if not stands), default=-1)
     begin = min((width for width in tried if width > fallen), default=None)
     while begin is not None and begin - fallen > 1 and fallen >= 0:
         between = (begin + fallen) // 2
         begin, fallen = (between, fallen) if at(between) else (begin, between)
-    steady = _steady(tried)
-    chosen = steady if steady is not None else begin
+    steady = _steady(tried, step)
+    chosen = next((width for width in (steady, begin) if width is not None), max(tried))
     told = tuple((width, *tried[width]) for width in sorted(tried))
-    return GapSweep(told, max(tried) if chosen is None else chosen, begin, steady is not None)
+    return GapSweep(told, chosen, begin, steady is not None, _beyond(chosen, step))
 
 
-def _steady(tried: Mapping[int, tuple[bool, float | None]]) -> int | None:
+def _steady(tried: Mapping[int, tuple[bool, float | None]], step: int) -> int | None:
     """Return the narrowest width from which on two wider ones or more change little."""
     for width, (stands, alpha) in sorted(tried.items()):
         if not stands:
             continue
-        upto = _beyond(width)
+        upto = _beyond(width, step)
         wider = [found for other, found in tried.items() if width < other <= upto]
         if len(wider) < 2 or max(tried) < 0.8 * upto:
             continue
@@ -269,8 +269,9 @@ def _steady(tried: Mapping[int, tuple[bool, float | None]]) -> int | None:
     return None
 
 
-def _beyond(width: int) -> float:
-    return max(BEYOND * width, width + 2.0)
+def _beyond(width: int, step: int) -> float:
+    # Two widths are tried beyond the narrowest ones, too: steps are shares of a stone.
+    return max(BEYOND * width, width + 2.0 * step)
 
 
 def _alike(one: float | None, other: float | None) -> bool:

@@ -376,10 +376,8 @@ def _read(path: Path) -> tuple[Plan, Mapping[int, Points], RigidBlockModel]:
     # Pictures are not even looked at: what would be said of them is not about plans.
     wall = read_wall(path) if path.is_dir() or path.suffix.lower() == ".json" else None
     if wall is None or wall.plan is None:
-        raise InputError(
-            "E132", "this is not a drystone plan.", where=str(path),
-            cure="Give the plan.json of a plan, or its folder.",
-        )  # fmt: skip
+        cure = "Give the plan.json of a plan, or its folder."
+        raise InputError("E132", "this is not a drystone plan.", where=str(path), cure=cure)
     # What is made of steps goes by their numbers.
     plan = wall.plan
     fault = first_fault(plan)

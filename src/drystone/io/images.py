@@ -87,10 +87,8 @@ def _read_png(data: bytes, max_px: int) -> Picture:
     depth, colour_type = data[24], data[25]
     if depth == 16 and colour_type != 0:
         # Pillow would keep the upper 8 bits of each channel, and ids would merge.
-        raise unread(
-            "this PNG has 16 bits a colour channel, which cannot be read without loss.",
-            "Export the ids as 16-bit grey PNG, as 8-bit RGB PNG or as TIFF.",
-        )
+        what = "this PNG has 16 bits a colour channel, which cannot be read without loss."
+        raise unread(what, "Export the ids as 16-bit grey PNG, as 8-bit RGB PNG or as TIFF.")
     # Pillow stretches 2 and 4 bits to 0 ... 255; the ids are the file's own.
     stretched = colour_type == 0 and depth in (2, 4)
     return _read_pillow(data, max_px, 255 // (2**depth - 1) if stretched else 1)

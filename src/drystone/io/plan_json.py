@@ -207,12 +207,9 @@ def _validate(data: Any, where: str) -> None:
     if errors:
         first = errors[0]
         more = f" ({len(errors) - 1} more like this)" if len(errors) > 1 else ""
-        raise PlanError(
-            "E205",
-            f"{_short(first.message, quote=False)}{more}.",
-            where=f"{where}: {_short(first.json_path, quote=False)}",
-            cure=_cure(first),
-        )
+        what = f"{_short(first.message, quote=False)}{more}."
+        where = f"{where}: {_short(first.json_path, quote=False)}"
+        raise PlanError("E205", what, where=where, cure=_cure(first))
 
 
 def _cure(error: jsonschema.ValidationError) -> str:

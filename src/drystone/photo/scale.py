@@ -108,12 +108,9 @@ def _usable(
     known = [one for one in found if layout.lists(one.id)]
     twice = [one for one, count in Counter(marker.id for marker in known).items() if count > 1]
     if twice:
-        raise InputError(
-            "E171",
-            f"{_markers(twice)} can be seen twice, so it is not known which is which.",
-            where="markers",
-            cure="Use every marker once: `drystone markers --ids` prints others.",
-        )
+        what = f"{_markers(twice)} can be seen twice, so it is not known which is which."
+        cure = "Use every marker once: `drystone markers --ids` prints others."
+        raise InputError("E171", what, where="markers", cure=cure)
     strange = sorted({one.id for one in found} - {one.id for one in known})
     if strange:
         others = "of the sheet" if layout.page else "to be used"

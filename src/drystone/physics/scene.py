@@ -29,9 +29,8 @@ class EngineScene:
                 what = "its outline has no area or crosses itself."
                 raise InputError("E303", what, where=f"block {block}", cure="Correct its corners.")
         if not set(self.shapes) - self.fixed:
-            raise InputError(
-                "E303", "there is no free block.", where="scene", cure="Give one to tilt."
-            )
+            cure = "Give one to tilt."
+            raise InputError("E303", "there is no free block.", where="scene", cure=cure)
 
     @cached_property
     def shapes(self) -> dict[int, shapely.Polygon]:

@@ -149,12 +149,9 @@ def require_known(ids: Iterable[object], stones: StoneSet) -> None:
     if unknown:
         # The keys of JSON are text: '5' is not 5.
         named = ", ".join(repr(i) if isinstance(i, str) else str(i) for i in unknown)
-        raise InputError(
-            "E195",
-            f"there is no stone {named} among the {len(stones)} stones.",
-            where="observe",
-            cure="Measure stones by the ids that they were read with; 0 is the background.",
-        )
+        what = f"there is no stone {named} among the {len(stones)} stones."
+        cure = "Measure stones by the ids that they were read with; 0 is the background."
+        raise InputError("E195", what, where="observe", cure=cure)
 
 
 def fitted(seen: Mask, outline: Points, scale: float, planned_deg: float | None) -> MeasuredPlace:
@@ -253,9 +250,6 @@ def _require_seen(stone: Stone, seen_px: float) -> None:
     share = seen_px / min(max(seen_px, stone.area_px), int(stone.solid.sum()))
     if SEEN[0] <= share <= SEEN[1]:
         return
-    raise InputError(
-        "E197",
-        f"stone {stone.id} has {100 * share:.0f} % of its area in the picture.",
-        where="observe",
-        cure="Give a picture of all of it, or set its pixels to 0 when it has fallen.",
-    )
+    what = f"stone {stone.id} has {100 * share:.0f} % of its area in the picture."
+    cure = "Give a picture of all of it, or set its pixels to 0 when it has fallen."
+    raise InputError("E197", what, where="observe", cure=cure)

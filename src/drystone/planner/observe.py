@@ -172,12 +172,9 @@ def _lost(
     missing = tuple(sorted(map(int, gone)))
     both = [i for i in missing if i in places]
     if both:
-        raise UsageError(
-            "E199",
-            f"stones {', '.join(map(str, both))} are lost, and measured in the wall.",
-            where="observe",
-            cure="Leave them out of one of the two.",
-        )
+        what = f"stones {', '.join(map(str, both))} are lost, and measured in the wall."
+        cure = "Leave them out of one of the two."
+        raise UsageError("E199", what, where="observe", cure=cure)
     return missing
 
 

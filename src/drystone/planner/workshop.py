@@ -104,12 +104,9 @@ def fitting_stones(
     stones; E137: no ids are left for wedges; E145: a stone is banned or pinned that does not exist.
     """
     if not len(stones):
-        raise UsageError(
-            "E126",
-            "there are no stones to build with.",
-            where=stones.source.path,
-            cure="See what was left out when the stones were read.",
-        )
+        what = "there are no stones to build with."
+        cure = "See what was left out when the stones were read."
+        raise UsageError("E126", what, where=stones.source.path, cure=cure)
     book = book or PoseBook(site.scale)
     banned = _known(stones, settings)
     usable = [s for s in stones if s.id not in banned]
@@ -130,12 +127,9 @@ def fitting_stones(
         )
     largest = max(stone.id for stone in stones)
     if largest + 2 * len(stones) >= 2**32 - 1:  # each stone may get two wedges
-        raise UsageError(
-            "E137",
-            f"stone {largest} leaves no ids for wedges, which are numbered after the largest id.",
-            where=stones.source.path,
-            cure="Renumber the stones with smaller ids.",
-        )
+        what = f"stone {largest} leaves no ids for wedges, which are numbered after the largest id."
+        cure = "Renumber the stones with smaller ids."
+        raise UsageError("E137", what, where=stones.source.path, cure=cure)
     return fitting
 
 
@@ -149,10 +143,7 @@ def _known(stones: StoneSet, settings: PlannerSettings) -> frozenset[int]:
     for name, asked in (("ban", settings.ban), ("pin", settings.pin)):
         unknown = sorted(set(asked) - ids)
         if unknown:
-            raise UsageError(
-                "E145",
-                f"there is no stone {', '.join(map(str, unknown))}.",
-                where=f"--{name}",
-                cure="`drystone stones` lists the ids.",
-            )
+            what = f"there is no stone {', '.join(map(str, unknown))}."
+            cure = "`drystone stones` lists the ids."
+            raise UsageError("E145", what, where=f"--{name}", cure=cure)
     return frozenset(settings.ban)

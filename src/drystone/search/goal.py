@@ -280,9 +280,10 @@ class Rehearsals:
             return RehearsalFalls(0.0, Counter())
         settings = self._yard.settings
         errors = self._errors or BuilderErrors.of_precision(HAND, mean_size(blocks))
-        put = [list(run) for run in zip(*(self._put(errors, one) for one in blocks), strict=True)]
         pairs = zip(groups, self._first, strict=False)
         same = sum(1 for _ in takewhile(lambda two: two[0] is two[1], pairs))
+        built = min(same, *(len(states) - 1 for states in self._states[: self._runs]))
+        put = [self._put(errors, one) for one in blocks[built:]]
         first, held, lost = Counter[int](), 0, [0.0] * self._runs
         rest = math.fsum(self._lost)
         for k in sorted(range(self._runs), key=self._lost.__getitem__, reverse=True):
@@ -291,7 +292,8 @@ class Rehearsals:
                 return None
             self._yard.until.look()
             states = self._states[k][: same + 1]
-            run = put_up(blocks, put[k], settings.mu, settings.settle, states)
+            pieces = [*([] for _ in range(built)), *(runs[k] for runs in put)]
+            run = put_up(blocks, pieces, settings.mu, settings.settle, states)
             if run.first_fall is not None:
                 first[run.first_fall] += 1
             lost[k] = sum(end.fallen for end in run.stones)

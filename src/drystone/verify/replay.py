@@ -269,12 +269,9 @@ def rebuild_wall(plan: Plan, stones: StoneSet) -> Wall:
     replay = replay_plan(plan, stones)
     if replay.problems:
         first = replay.problems[0]
-        raise PlanError(
-            first.code,
-            first.message,
-            where="settings" if first.step is None else f"step {first.step}",
-            cure="Give the stones that the plan was made from; `drystone check` lists everything.",
-        )
+        where = "settings" if first.step is None else f"step {first.step}"
+        cure = "Give the stones that the plan was made from; `drystone check` lists everything."
+        raise PlanError(first.code, first.message, where=where, cure=cure)
     return replay.wall
 
 

@@ -173,13 +173,9 @@ def _wants_scatter(arguments: argparse.Namespace) -> bool:
     noise = arguments.precision, arguments.outline_noise, arguments.placement_noise
     varied = any(noise) or bool(mu and mu[0] < mu[1])
     if arguments.scatter is not None and not varied:
-        cure = (
-            "Say what is not known: --mu LOW:HIGH, --outline-noise or --placement-noise, or "
-            "--precision."
-        )
-        raise UsageError(
-            "E138", "all samples would be the same wall.", where="--scatter", cure=cure
-        )
+        what, given = "all samples would be the same wall.", "--outline-noise or --placement-noise"
+        cure = f"Say what is not known: --mu LOW:HIGH, {given}, or --precision."
+        raise UsageError("E138", what, where="--scatter", cure=cure)
     return varied
 
 

@@ -119,10 +119,9 @@ def scale_from(arguments: argparse.Namespace) -> MarkerLayout | float | None:
     if arguments.aruco is None:
         for name in ("marker_ids", "check_line"):
             if getattr(arguments, name) is not None:
-                raise UsageError(
-                    "E138", "is about markers, and there are none.",
-                    where=f"--{name.replace('_', '-')}", cure="Add --aruco, or leave it out.",
-                )  # fmt: skip
+                what, option = "is about markers, and there are none.", name.replace("_", "-")
+                cure = "Add --aruco, or leave it out."
+                raise UsageError("E138", what, where=f"--{option}", cure=cure)
         scale: float | None = arguments.px_per_m
         return scale
     if arguments.px_per_m is not None:

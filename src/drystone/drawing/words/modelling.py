@@ -18,12 +18,13 @@ from drystone.contacts.gaps import (
     settle_gaps,
 )
 from drystone.contacts.given import model_from_json, polygons_from_json, refuse_astray
-from drystone.contacts.outlines import model_of_traced, outlines_of_labels
+from drystone.contacts.outlines import CONTACT_TOLERANCE, model_of_traced, outlines_of_labels
 from drystone.contacts.settled import SETBACK
 from drystone.drawing.words.analysis import STONES, ModelledWall, Shapes
 from drystone.errors import InputError, Notice, UsageError, counted
 from drystone.io.files import listed
 from drystone.io.walls import GivenWall
+from drystone.model.overlap import deepest_overlap, shape_of
 from drystone.model.stone_size import median_sides, sizes_of
 from drystone.model.wall import Labels
 from drystone.statics.failing.mechanism import Names, Noun
@@ -104,13 +105,13 @@ def _drawn(wall: GivenWall, labels: Labels, mu: float, asked: ModelRequest) -> M
     if asked.close_gaps is not None:
         return _with_closed_gaps(wall, labels, mu, asked)
     if asked.contacts == "pixels" and wall.outlines is not None:
-        model = model_of_traced(wall.outlines, mu)
-        return ModelledWall(model, wall.outlines, joints="drawn")
+        model, notices = model_of_traced(wall.outlines, mu), _overlapping(wall)
+        return ModelledWall(model, wall.outlines, notices=notices, joints="drawn")
     picture = model_from_labels(labels, mu)
     if asked.contacts == "pixels":
         return ModelledWall(picture.model, labels, notices=picture.notices, joints="drawn")
     outlines = wall.outlines or outlines_of_labels(labels[: picture.ground_row])
-    notices = picture.notices if wall.outlines is None else ()
+    notices = picture.notices if wall.outlines is None else _overlapping(wall)
     bare = model_of_traced(outlines, mu)
     if wall.outlines is None:
         # What a picture weighs it weighs by its pixels, not by what smoothing made of them.
@@ -123,6 +124,21 @@ def _drawn(wall: GivenWall, labels: Labels, mu: float, asked: ModelRequest) -> M
         said += f"; {with_ends} with contacts up to the ends of faces"
     model, remarks = replace(bare, interfaces=found.interfaces), {"contacts": said}
     return ModelledWall(model, outlines, STONES, notices, remarks, joints="outlines")
+
+
+def _overlapping(wall: GivenWall) -> tuple[Notice, ...]:
+    """Say which drawn stones lie deepest in each other, if so deep that they do not bear (W308)."""
+    shapes = [(stone, shape_of(drawn[:-1])) for stone, drawn in (wall.outlines or {}).items()]
+    depth, pair = deepest_overlap(shapes)
+    if pair is None or depth <= CONTACT_TOLERANCE:
+        return ()
+    metres = "" if wall.px_per_m is None else f" ({1000.0 * depth / wall.px_per_m:.2g} mm)"
+    what = (
+        f"outlines of stones lie in each other, {pair[0]} and {pair[1]} by {depth:.2g} px{metres}: "
+        f"edges bear up to {CONTACT_TOLERANCE:g} px deep."
+    )
+    cure = "Draw them side by side; or --close-gaps auto takes for contacts where pixels meet."
+    return (Notice("W308", what, cure),)
 
 
 def _with_closed_gaps(
@@ -215,7 +231,8 @@ def sweep_rows(sweep: GapSweep, usual_px: float, per_m: float | None) -> Iterato
             yield f"  {width} px", known if alpha is None else f"alpha = {alpha:.4f}"
     low, high = sweep.within() or (None, None)
     if low is not None and high is not None:
-        upto = f"from {chosen} px to half as much again alpha is {low:.3f} to {high:.3f}"
+        widest = max(width for width, *_ in sweep.tried if width <= sweep.upto_px)
+        upto = f"from {chosen} to {widest} px alpha is {low:.3f} to {high:.3f}"
         hangs = "it hangs on the width: measure the joints" if not sweep.steady else "steady"
         yield "  how sure", f"{hangs}; {upto}"
     if chosen:

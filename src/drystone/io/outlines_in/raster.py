@@ -48,11 +48,9 @@ def in_px(file: OutlineFile, settings: ReadSettings) -> OutlineFile:
         return file
     size = file.size_px or _size_of(settings.image)
     if size is None:
-        raise InputError(
-            "E116",
-            "its coordinates are shares of a picture (0 ... 1), and it does not say its size.",
-            cure="Name the picture with --image PHOTO.jpg (ReadSettings.image), or export in px.",
-        )
+        what = "its coordinates are shares of a picture (0 ... 1), and it does not say its size."
+        cure = "Name the picture with --image PHOTO.jpg (ReadSettings.image), or export in px."
+        raise InputError("E116", what, cure=cure)
     stones = [stone.moved(lambda ring: np.asarray(ring * size)) for stone in file.stones]
     text = f"its coordinates are shares of the picture: taken times {size[0]} x {size[1]} px."
     return replace(file, stones=stones, size_px=size, notices=[*file.notices, Notice("W119", text)])
