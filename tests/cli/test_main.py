@@ -80,6 +80,12 @@ def test_a_cure_names_options_that_the_command_has(run, monkeypatch, tmp_path):
     assert said in run("generate", "brick", "-o", tmp_path / "x.png").err
 
 
+@pytest.mark.parametrize(("option", "value"), [("--ruler", "-1,0,9,0=1m"), ("--wall", "-3x4")])
+def test_how_to_give_what_begins_with_a_minus(run, option, value):
+    ran = run("plan", "x.png", option, value)
+    assert (ran.code, f"begins with a minus so: {option}=-1." in ran.err) == (2, True)
+
+
 def in_a_shell(line):
     """Run a command line in a process of its own; what goes to stdout and stderr is kept."""
     return subprocess.run(  # noqa: S602 - our own code

@@ -16,7 +16,7 @@ from drystone.errors import InputError
 from drystone.model.stone_size import sizes_of
 from drystone.photo.layout import parse_layout
 from drystone.photo.markers import FoundMarker
-from drystone.photo.segment import EDGE, FAINT, segment
+from drystone.photo.segment import EDGE, FAINT, refine_outlines, segment
 from drystone.photo.segment import SMALL as TOO_SMALL
 from drystone.photo.segment_doubts import (
     LISTED,
@@ -391,6 +391,19 @@ def test_what_is_no_photograph_of_stones_laid_out_is_in_doubt_or_refused(kind):
     except InputError as error:
         said = [error.code]
     assert said in (["E175"], ["E176"], ["W183"])
+
+
+@pytest.mark.parametrize("filled", [8, 20, 30])
+def test_a_joint_that_was_filled_is_cleared_to_its_middle(filled):
+    """What is left of it half way is a spike on both stones."""
+    stones = np.zeros((160, 240), bool)
+    stones[30:130, 30:110], stones[30:130, 126:210] = True, True
+    lab = np.where(stones[..., None], np.float32([60, 5, 5]), np.float32([45, 0, -30]))
+    about = stones.copy()
+    about[80 - filled // 2 : 80 + filled // 2, 110:126] = True
+    refined = refine_outlines(lab, about, np.ones_like(stones))
+    assert not refined[40:120, 110:126].any()
+    assert np.count_nonzero(refined != stones) < 30  # corners are rounded
 
 
 def test_ground_that_varies_is_not_in_doubt():

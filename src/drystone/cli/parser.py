@@ -166,6 +166,8 @@ class _Parser(argparse.ArgumentParser):
             cure = meant(choice[2], known, "drystone " if choice[1] == "COMMAND" else "") + cure
         elif (option := re.match(r"unrecognized arguments: (--[\w-]+)", message)) is not None:
             cure = meant(option[1], self._option_string_actions) + cure
+        elif lacks := re.search(r"(--[\w-]+)\S*: expected one argument", message):
+            cure = f"Give it one; one that begins with a minus so: {lacks[1]}=-1. {cure}"
         coded = UsageError("E138", f"{message}.", cure=cure)
         self.exit(int(coded.exit_code), f"drystone: {coded}\n")
 

@@ -65,6 +65,11 @@ class LeftOut:
 BAND_PX = 4
 """How far an outline may be moved at a time."""
 
+ROUNDS, STILL = 4, 2e-5
+"""How often at most: until hardly a pixel moves, as a share of all.
+
+A joint that was filled at first is cleared from its ends: half way there are spikes."""
+
 _WINDOW_PX = 11
 _LEAST_CONTRAST = 3.0
 
@@ -286,7 +291,8 @@ def refine_outlines(lab: Planes, stone: Mask, usable: Mask) -> Mask:
 
     `stone` is where stones are, about; `usable` what the photograph shows of ground and stones.
     """
-    for _ in range(2):
+    for _ in range(ROUNDS):
+        before = stone
         inner = ndimage.distance_transform_edt(stone)
         outer = ndimage.distance_transform_edt(~stone)
         band = (inner <= BAND_PX) & (outer <= BAND_PX) & usable
@@ -296,6 +302,8 @@ def refine_outlines(lab: Planes, stone: Mask, usable: Mask) -> Mask:
         share = ((lab - there) * way).sum(axis=-1) / np.maximum(contrast, 1e-6) ** 2
         moved = np.where(band & (contrast > _LEAST_CONTRAST), share > 0.5, stone)
         stone = ndimage.median_filter(moved.astype(np.uint8), 5).astype(bool)
+        if np.count_nonzero(stone != before) <= STILL * stone.size:
+            break
     return stone
 
 
