@@ -76,7 +76,7 @@ def test_a_stack_bond_costs_more_than_the_bricks_that_a_bond_leaves_out():
 def careless():
     """A planner that has built a wall of which stones fall."""
     settings = scenes.greedy({"settle": {"trials": 0}, "search": {"budget": 2}})
-    return scenes.finish(Planner(scenes.ROUNDED, scenes.ROUNDED_SITE, seed=18, settings=settings))
+    return scenes.finish(Planner(scenes.ROUNDED, scenes.ROUNDED_SITE, seed=1, settings=settings))
 
 
 def test_what_nearly_falls_in_a_rehearsal_counts_too(careless):

@@ -296,7 +296,7 @@ def half_of(planner):
 def test_stones_that_fall_in_rehearsals_are_taken_out_or_laid_elsewhere():
     careless = scenes.greedy({"search": {"budget": 2}, "settle": {"trials": 0}})
     site = Site.from_source(160, 100, 0.5)
-    planner = scenes.finish(Planner(scenes.ROUNDED, site, seed=3, settings=careless))
+    planner = scenes.finish(Planner(scenes.ROUNDED, site, seed=0, settings=careless))
     yard = Yard.of(planner)
     wall = FoundWall.of(planner).judged(yard, THOROUGH)
     assert wall.falls.first

@@ -59,7 +59,7 @@ def fitted_lines(nodes: Points, tolerance: float) -> tuple[list[int], list[Line]
     the indices of the nodes between pieces, with 0 and n.  From its start every piece is as long as
     it can be; then every cut moves to where the two pieces beside it fit best.
     """
-    chain: Chain = Chain(nodes)
+    chain: EdgeChain = EdgeChain(nodes)
     cuts, last = [0], 0
     while last < chain.count:
         last = furthest(chain, last, tolerance)
@@ -80,7 +80,7 @@ def fitted_lines(nodes: Points, tolerance: float) -> tuple[list[int], list[Line]
 
 
 @cython.cclass
-class Chain:
+class EdgeChain:
     """Midpoints of the edges of a chain, sums that make fits of any piece quick, and a fit."""
 
     def __init__(self, nodes: Points) -> None:
