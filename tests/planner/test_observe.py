@@ -290,9 +290,19 @@ def test_poses_of_steps_are_in_metres_and_need_a_scale():
     pick = step.pick_pose(0.3)
     assert (pick.x_m * PX_PER_M, pick.y_m * PX_PER_M) == pytest.approx(centroid)
     assert pick.z_m == pytest.approx(0.15)
+    # What is ground under the camera is the back of the wall, and what it sees the front.
+    moved = step.place_pose(0.3).matrix @ np.linalg.inv(pick.matrix)
+    for z, y in ((0.0, 0.3), (0.3, 0.0)):
+        point = moved @ (pick.x_m, pick.y_m, z, 1.0)
+        assert point[:3] == pytest.approx((step.pose3d.x_m, y, step.pose3d.z_m))
+    for poses in (step.place_pose, step.pick_pose):
+        with pytest.raises(TypeError, match="thickness_m"):  # without it, they are of two points
+            poses()
     unscaled = Planner(rubble(), Site.from_source(250.0, 95.0, SCALE), settings=PIXELS)
     step = next(unscaled.steps())
-    for asked in (lambda: step.pose3d, step.place_pose, step.pick_pose):
+    for asked in (
+        lambda: step.pose3d, lambda: step.place_pose(0.3), lambda: step.pick_pose(0.3)
+    ):  # fmt: skip
         with pytest.raises(UsageError, match=r"E131.*--px-per-m.*--ruler.*markers"):
             asked()
 

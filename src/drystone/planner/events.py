@@ -32,15 +32,15 @@ class Step:
 
     @property
     def pose3d(self) -> Pose3d:
-        """Where the stone goes in the wall: :meth:`place_pose` in the plane of the front face.
+        """Where the centroid of its front face goes in the wall (frame W), of any thickness.
 
-        A robot that holds stones in the middle of a wall of some thickness asks
-        :meth:`place_pose` for it.
+        A robot asks :meth:`place_pose` and :meth:`pick_pose`, with one thickness for both: they
+        are of one point of the stone.
         """
-        return self.place_pose()
+        return self.place_pose(0.0)
 
     @typed
-    def place_pose(self, thickness_m: float = 0.0) -> Pose3d:
+    def place_pose(self, thickness_m: float) -> Pose3d:
         """Return where the centroid of the stone goes in the wall (frame W), and how it is turned.
 
         The centroid is half of the wall's thickness behind the front face.  UsageError (E131): the
@@ -52,10 +52,11 @@ class Step:
         return wall_pose(x * metres, y * metres, thickness_m, placement.posed.angle_deg)
 
     @typed
-    def pick_pose(self, thickness_m: float = 0.0) -> Pose3d:
+    def pick_pose(self, thickness_m: float) -> Pose3d:
         """Return where the stone lies in the picture that it was read from (frame P).
 
-        Its centroid is half of its thickness above the ground.  Errors are those of
+        Its centroid is half of its thickness above the ground, which must be told: the face that
+        the camera sees, the front of the wall, is a whole one above it.  Errors are those of
         :meth:`place_pose`.
         """
         x, y = self.action.stabilised.placement.posed.stone.centroid
