@@ -325,5 +325,6 @@ CODES = {
     "W304": "Pixels of a stone lie apart from it; all pixels of an id are one rigid block.",
     "W305": "Stones have fewer than two contact points.",
     "W306": "A block model gives the friction of blocks that do not touch.",
+    "W307": "A block model has keys that mean nothing.",
 }
 """Every code, and what it means in one sentence; docs/errors.md has more, and the cures."""

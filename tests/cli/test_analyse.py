@@ -348,6 +348,23 @@ def test_friction_of_blocks_that_do_not_touch_is_named(tmp_path, run):
     assert "W306 blocks do not touch, so their friction is left aside: 0 and 2. Correct" in said
 
 
+@pytest.mark.parametrize("command", ["analyse", "craft"])
+def test_keys_that_a_block_model_does_not_have_are_named(command, settled, tmp_path, run):
+    odd = {"densty": 9, "name": "a"}, {"densty": 9, "Fixed": True}
+    blocks = [{"id": 1 + i, "polygon": box(2 * i, 0, 1, 1)} | one for i, one in enumerate(odd)]
+    pair = {"between": [1, 0], "mu": 0.4, "nu": 1}
+    more = {"mue": 0.9, "comment": 1, "_mine": 2, "friction": [pair], "blocks": blocks}
+    said = run(command, written(tmp_path / "b.json", **more)).err
+    assert said.count("W307") == 1
+    assert (
+        "keys that a block model does not have: 'mue', 'densty' (blocks, entry 1), 'Fixed' (blocks,"
+        " entry 2), 'nu' (friction, entry 1). Did you mean `mu`? Did you mean `density`?"
+    ) in " ".join(said.split())
+    said = run(command, written(tmp_path / "c.json", box(0, 0, 1, 1), rho=1)).err
+    assert "does not have: 'rho'. Keys of your own: comment, meta, name, or _KEY." in said
+    assert "W307" not in run(command, settled / "blocks.json").err
+
+
 def test_the_friction_of_head_joints_in_the_options_wins_over_that_of_the_file(tmp_path, run):
     pair = box(0, 0, 1, 2), box(1, 0, 1, 2)
     model = written(tmp_path / "pair.json", *pair, mu=0.9, mu_head=0.9)

@@ -1,6 +1,7 @@
 """Reading what `analyse`, `measure` and `craft` are given: a plan, a block model, or stones."""
 
 import math
+import reprlib
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
@@ -12,7 +13,7 @@ import shapely
 
 from drystone.contacts.blocks import pieces_apart
 from drystone.contacts.given import polygons_from_json, read_mu
-from drystone.errors import InputError, LabelImageError, Notice, UsageError
+from drystone.errors import InputError, LabelImageError, Notice, UsageError, meant
 from drystone.io.files import file_bytes, foreign, listed, naming
 from drystone.io.images import check_size
 from drystone.io.json_text import json_of
@@ -131,7 +132,7 @@ def read_wall(path: Path, settings: ReadSettings | None = None) -> GivenWall:
             "E118", f"{what} are: {options} has no meaning.", where=str(path), cure=cure
         )
     if model:
-        return GivenWall(None, blocks=content)
+        return GivenWall(None, blocks=content, notices=_unknown_keys(content))
     plan = read_plan(path)
     labels = read_image_of(plan, path.parent)
     if labels is None or not shows(labels, plan):
@@ -144,6 +145,37 @@ def read_wall(path: Path, settings: ReadSettings | None = None) -> GivenWall:
         _refuse_misplaced(labels, plan, path)
         return GivenWall(labels, plan)
     return GivenWall(labels, plan, _blocks_of(plan, labels, path))
+
+
+_KEYS = {
+    "": ("blocks", "blocks_xywh", "mu", "mu_head", "friction", "interfaces", "px_per_m"),
+    "blocks": ("id", "polygon", "density", "fixed", "held", "angle_deg", "source_centroid"),
+    "friction": ("between", "mu"),
+    "interfaces": ("between", "points", "normal", "mu"),
+}
+"""Of a block model itself, and of the entries of its lists; those that plans write among them."""
+
+_REMARKS = ("comment", "meta", "name")
+"""Keys that anything may have, as it may have those that begin with _."""
+
+
+def _unknown_keys(content: Mapping[str, Any]) -> tuple[Notice, ...]:
+    """Name the keys of a block model that mean nothing (W307), each where it comes first."""
+    found, cures = dict[tuple[str, str], str](), dict[str, None]()
+    for part, known in _KEYS.items():
+        entries = content.get(part) if part else [content]
+        for place, entry in enumerate(entries if isinstance(entries, list) else (), 1):
+            for key in entry if isinstance(entry, dict) else ():
+                if key not in (*known, *_REMARKS) and not key.startswith("_"):
+                    where = f" ({part}, entry {place})" if part else ""
+                    found.setdefault((part, key), f"{reprlib.repr(key)}{where}")
+                    cures[meant(key, known).strip()] = None
+    if not found:
+        return ()
+    cure = " ".join(filter(None, cures)) or f"Keys of your own: {', '.join(_REMARKS)}, or _KEY."
+    return (
+        Notice("W307", f"keys that a block model does not have: {listed(found.values())}.", cure),
+    )
 
 
 def _stones(path: Path, settings: ReadSettings) -> GivenWall:

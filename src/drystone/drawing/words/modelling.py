@@ -96,7 +96,7 @@ def _given(wall: GivenWall, blocks: dict[str, Any], mu: float, asked: ModelReque
     idle = [f"{one} and {other}" for one, other in pairs if frozenset((one, other)) not in touching]
     what = f"blocks do not touch, so their friction is left aside: {listed(idle)}."
     cure = "Correct the ids, or where the blocks lie."
-    notices = (Notice("W306", what, cure),) if idle else ()
+    notices = (*wall.notices, *([Notice("W306", what, cure)] if idle else ()))
     return ModelledWall(model, outlines, notices=notices, remarks=remarks)
 
 
