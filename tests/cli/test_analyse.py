@@ -298,7 +298,13 @@ def test_gaps_are_looked_for_and_closed_and_that_is_said(tmp_path, run):
     said = f"F_LR {closed['F_LR']:.3f}".replace("0.", ".")
     assert closed["remarks"]["gaps"].startswith(said)
     assert "gaps up to 2 px closed" in closed["remarks"]["gaps"]
-    assert "lowered by up to 2 px" in run(*asked[:2], "--close-gaps", "settle").out
+    settled = (*asked[:2], "--close-gaps", "settle")
+    assert " 2 stones lowered by up to 2 px" in run(*settled).out
+    labels[labels == 5] = 0
+    write_labels(labels, wall)
+    assert " 1 stone lowered by up to 2 px" in run(*settled).out
+    labels[0:10, 33:53] = 5
+    write_labels(labels, wall)
     one_way = ("--px-per-m", "100", "--load", "gravity", "--dead", "1@10,5:1,0")
     lines = run(*asked, *one_way).out
     assert all(f"\n{name} " in lines for name in ("friction", "gaps", "head joints", "size"))

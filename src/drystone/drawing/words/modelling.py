@@ -140,7 +140,7 @@ def _with_closed_gaps(
         settled, moved = settle_gaps(labels)
         made = _made(wall, settled, model_from_labels(settled, mu), moved)
         farthest = max((max(abs(dx), abs(dy)) for dx, dy in moved.values()), default=0)
-        done = f"{len(moved)} stones lowered by up to {farthest} px; "
+        done = f"{counted(len(moved), 'stone')} lowered by up to {farthest} px; "
     spread = gap_spread(labels, reach, mu, partial(_resistance, asked))
     return replace(made, remarks={"gaps": f"{done}{spread}"}, joints="drawn")
 
