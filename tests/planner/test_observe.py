@@ -267,6 +267,10 @@ def test_what_makes_no_sense_is_refused_and_changes_nothing():
         assert one.build is before
     with pytest.raises(UsageError, match="E199"):  # it is there
         one.observe(in_metres(planned(one)), lost=[stone_id])
+    with pytest.raises(TypeError, match="lost must be a list, not 5"):
+        one.observe(in_metres(planned(one)), lost=5)
+    with pytest.raises(TypeError, match="measured must be"):
+        one.observe(5)
 
 
 def test_poses_of_steps_are_in_metres_and_need_a_scale():
