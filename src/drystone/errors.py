@@ -322,6 +322,7 @@ CODES = {
     "W304": "Pixels of a stone lie apart from it; all pixels of an id are one rigid block.",
     "W305": "Stones have fewer than two contact points.",
     "W306": "A block model gives the friction of blocks that do not touch.",
+    "W307": "A block model has keys that mean nothing.",
     "W308": "Drawn stones lie in each other, deeper than edges bear.",
 }
 """Every code, and what it means in one sentence; docs/errors.md has more, and the cures."""

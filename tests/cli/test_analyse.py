@@ -298,7 +298,13 @@ def test_gaps_are_looked_for_and_closed_and_that_is_said(tmp_path, run):
     said = f"F_LR {closed['F_LR']:.3f}".replace("0.", ".")
     assert closed["remarks"]["gaps"].startswith(said)
     assert "gaps up to 2 px closed" in closed["remarks"]["gaps"]
-    assert "lowered by up to 2 px" in run(*asked[:2], "--close-gaps", "settle").out
+    settled = (*asked[:2], "--close-gaps", "settle")
+    assert " 2 stones lowered by up to 2 px" in run(*settled).out
+    labels[labels == 5] = 0
+    write_labels(labels, wall)
+    assert " 1 stone lowered by up to 2 px" in run(*settled).out
+    labels[0:10, 33:53] = 5
+    write_labels(labels, wall)
     one_way = ("--px-per-m", "100", "--load", "gravity", "--dead", "1@10,5:1,0")
     lines = run(*asked, *one_way).out
     assert all(f"\n{name} " in lines for name in ("friction", "gaps", "head joints", "size"))
@@ -360,6 +366,23 @@ def test_friction_of_blocks_that_do_not_touch_is_named(tmp_path, run):
     path = written(tmp_path / "b.json", box(0, 0, 1, 1), box(0, 1, 1, 1), friction=pairs)
     said = run("analyse", path).err
     assert "W306 blocks do not touch, so their friction is left aside: 0 and 2. Correct" in said
+
+
+@pytest.mark.parametrize("command", ["analyse", "craft"])
+def test_keys_that_a_block_model_does_not_have_are_named(command, settled, tmp_path, run):
+    odd = {"densty": 9, "name": "a"}, {"densty": 9, "Fixed": True}
+    blocks = [{"id": 1 + i, "polygon": box(2 * i, 0, 1, 1)} | one for i, one in enumerate(odd)]
+    pair = {"between": [1, 0], "mu": 0.4, "nu": 1}
+    more = {"mue": 0.9, "comment": 1, "_mine": 2, "friction": [pair], "blocks": blocks}
+    said = run(command, written(tmp_path / "b.json", **more)).err
+    assert said.count("W307") == 1
+    assert (
+        "keys that a block model does not have: 'mue', 'densty' (blocks, entry 1), 'Fixed' (blocks,"
+        " entry 2), 'nu' (friction, entry 1). Did you mean `mu`? Did you mean `density`?"
+    ) in " ".join(said.split())
+    said = run(command, written(tmp_path / "c.json", box(0, 0, 1, 1), rho=1)).err
+    assert "does not have: 'rho'. Keys of your own: comment, meta, name, or _KEY." in said
+    assert "W307" not in run(command, settled / "blocks.json").err
 
 
 def test_the_friction_of_head_joints_in_the_options_wins_over_that_of_the_file(tmp_path, run):

@@ -104,6 +104,42 @@ def test_a_plan_needs_its_own_blocks(settled_copy, run):
         assert (ran.code, "E238" in ran.out) == ((5, True) if path.exists() else (0, False))
 
 
+def test_entries_that_the_files_beside_a_plan_contradict_are_named(metric, tmp_path, run):
+    first = read_plan(metric).stone_steps[0]
+
+    def step(plan):
+        return plan["steps"][first.step - 1]
+
+    name = f"of step {first.step} (stone {first.stone}) is"
+    turned = first.angle_deg / 2 + 20
+    for tamper, said, known_before in (
+        (lambda plan: step(plan).update(angle_deg=turned), f"angle_deg {name} {turned}", False),
+        (lambda plan: step(plan).update(source_centroid=[1, 2]), f"source_centroid {name}", False),
+        (lambda plan: plan["settings"].update(mu=0.3), "settings.mu is 0.3 by the plan", True),
+        (lambda plan: plan["units"].update(px_per_m=100), "units.px_per_m is 100.0 by the", True),
+        (lambda plan: plan["units"].update(working_scale=0.1), "the size of wall.png (wall", True),
+        (lambda plan: plan["wall"].update(width=9), "the size of wall.png (wall times", True),
+    ):
+        out = shutil.copytree(metric, tmp_path / "m", dirs_exist_ok=True)
+        rewrite(out / "plan.json", tamper)
+        for command in (("analyse", out), ("export", out, "--to", "poses")):
+            run(*command).refused("E133", said, exit_code=3)
+        # A folder of before has blocks without poses and a scale: what the image tells is left.
+        rewrite(out / BLOCKS, forget)
+        ran = run("analyse", out)
+        assert (ran.code, "E133" in ran.err) == ((3, True) if known_before else (0, False))
+    out = shutil.copytree(metric, tmp_path / "m", dirs_exist_ok=True)
+    rewrite(out / BLOCKS, forget)
+    assert run("analyse", out, "--json").json() == run("analyse", metric, "--json").json()
+
+
+def forget(blocks):
+    del blocks["px_per_m"]
+    for block in blocks["blocks"]:
+        block.pop("angle_deg", None)
+        block.pop("source_centroid", None)
+
+
 def test_a_wedge_in_another_place_is_not_that_of_the_plan(settled_copy, run):
     """A stone of the plan stands for a wedge here, so that there is one in any case."""
     first, *_, last = read_plan(settled_copy).steps

@@ -380,5 +380,5 @@ def test_a_wall_of_pixels_and_an_empty_one_have_no_blocks():
         blocks_to_json(example().wall, built()[1])
     wall = Wall.empty(Site.from_source(40.0, 20.0, 0.5), exact=True)
     read = blocks_to_json(wall, model_of_outlines(wall.outlines, 0.58, 0.1))
-    assert read == {"mu": 0.58, "blocks": [], "interfaces": []}
+    assert read == {"mu": 0.58, "px_per_m": None, "blocks": [], "interfaces": []}
     assert model_from_json(read).blocks == ()

@@ -188,9 +188,13 @@ def test_empty_space_around_the_wall_and_numbers_of_stones_change_nothing(labels
 
 
 def test_a_wall_without_room_without_stones_and_with_too_few_for_paths():
-    for size in ((0.0, 80.0), (280.0, -1.0), (np.nan, 80.0), (280.0, np.inf), (1e9, 80.0)):
+    odd = (5,), (), (1, 2, 3)
+    for size in (*odd, (0.0, 80.0), (280.0, -1.0), (np.nan, 80.0), (280.0, np.inf), (1e9, 80.0)):
         with pytest.raises(UsageError, match="E121"):
             measure_labels(bricks(2, 2, 5, 8), wall_px=size)
+    for area in (-3, np.nan, np.inf):
+        with pytest.raises(UsageError, match=r"E138 stone_area_px: .* is not an area"):
+            measure_labels(bricks(2, 2, 5, 8), stone_area_px=area)
     metrics = measure_labels(np.ones((6, 6), np.uint32))
     assert (metrics.F_AV, metrics.F_AH) == (None, None)
     with pytest.raises(LabelImageError, match="E104"):

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from drystone.errors import UsageError
-from drystone.model.site import Site, working_px
+from drystone.io.plan_json import plan_schema
+from drystone.model.site import LARGEST, LONGEST, SHORTEST, Site, working_px
 
 
 def test_halves_round_up_and_outlines_must_stay_within_the_lengths_in_source_px():
@@ -32,6 +33,23 @@ def test_sizes_and_scales_that_are_none_are_refused_with_the_cure():
     for size in ((math.nan, 20), (60, math.inf)):
         with pytest.raises(UsageError, match=r"E127 --wall: .* is not a wall size"):
             Site.from_source(*size)
-    for px_per_m in (0.0, -400.0, math.nan, math.inf):
-        with pytest.raises(UsageError, match=r"E138 --px-per-m: .* is not a scale"):
-            Site.from_source(560, 160, px_per_m=px_per_m)
+    for made in (Site, Site.from_source):
+        for px_per_m in (0.0, -400.0, math.nan, math.inf):
+            with pytest.raises(UsageError, match=r"E138 --px-per-m: .* is not a scale"):
+                made(560, 160, px_per_m=px_per_m)
+        for scale in (0.0, -0.5, math.nan, math.inf):
+            with pytest.raises(UsageError, match=r"E125 --scale: .* is not above 0"):
+                made(560, 160, scale=scale)
+
+
+@pytest.mark.parametrize(("most", "px_per_m"), [(560, 5e-7), (560, 1e-12), (0.9, 1e9)])
+def test_walls_in_metres_that_no_plan_can_have_are_refused_at_once(most, px_per_m):
+    with pytest.raises(UsageError, match=r"E138 --px-per-m: with .* px in a metre the wall is"):
+        Site.from_source(max(most, 1), most, px_per_m=px_per_m)
+
+
+def test_the_limits_of_walls_are_those_of_plans():
+    parts = plan_schema()["properties"]
+    width, area = (parts[a]["properties"][b] for a, b in (("wall", "width"),
+                                                          ("metrics", "wedge_area")))  # fmt: skip
+    assert (width["minimum"], width["maximum"], area["maximum"]) == (SHORTEST, LONGEST, LARGEST)

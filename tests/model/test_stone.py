@@ -31,8 +31,9 @@ def test_a_stone_has_a_positive_id_and_pixels_of_its_own():
     assert (stone.area_px, stone.eccentricity) == (81, 0.0)
     with pytest.raises(ValueError, match="read-only"):
         stone.mask[0, 0] = False
-    with pytest.raises(ValueError, match="id must be positive"):
-        Stone(0, np.ones((1, 1), bool))
+    for wrong in (0, -1, 2**32, 2**40):
+        with pytest.raises(ValueError, match=f"id must be .* from 1 to 4294967295, not {wrong}"):
+            Stone(wrong, np.ones((1, 1), bool))
     with pytest.raises(TypeError):
         Stone(1.5, np.ones((1, 1), bool))
     # No id of NumPy wraps where others are numbered after it.

@@ -267,6 +267,10 @@ def test_what_makes_no_sense_is_refused_and_changes_nothing():
         assert one.build is before
     with pytest.raises(UsageError, match="E199"):  # it is there
         one.observe(in_metres(planned(one)), lost=[stone_id])
+    with pytest.raises(TypeError, match="lost must be a list, not 5"):
+        one.observe(in_metres(planned(one)), lost=5)
+    with pytest.raises(TypeError, match="measured must be"):
+        one.observe(5)
 
 
 def test_poses_of_steps_are_in_metres_and_need_a_scale():
@@ -290,6 +294,14 @@ def test_poses_of_steps_are_in_metres_and_need_a_scale():
     pick = step.pick_pose(0.3)
     assert (pick.x_m * PX_PER_M, pick.y_m * PX_PER_M) == pytest.approx(centroid)
     assert pick.z_m == pytest.approx(0.15)
+    # What is ground under the camera is the back of the wall, and what it sees the front.
+    moved = step.place_pose(0.3).matrix @ np.linalg.inv(pick.matrix)
+    for z, y in ((0.0, 0.3), (0.3, 0.0)):
+        point = moved @ (pick.x_m, pick.y_m, z, 1.0)
+        assert point[:3] == pytest.approx((step.pose3d.x_m, y, step.pose3d.z_m))
+    # Without a thickness both are those of a plate.
+    assert step.place_pose() == step.pose3d
+    assert step.pick_pose().z_m == 0.0
     unscaled = Planner(rubble(), Site.from_source(250.0, 95.0, SCALE), settings=PIXELS)
     step = next(unscaled.steps())
     for asked in (lambda: step.pose3d, step.place_pose, step.pick_pose):

@@ -40,6 +40,14 @@ def test_what_overhangs_too_far_is_unstable_in_both_directions():
     assert "own weight" in both.right.message
 
 
+def test_a_solver_that_there_is_not_is_named():
+    model = boxes((0, 0, 2, 1))
+    for loads in (None, tilting_table(model)):
+        find = lateral_resistance if loads is None else load_range
+        with pytest.raises(ValueError, match=r"solver must be one of 'auto', .*, not 'x'"):
+            find(model, loads, solver="x")
+
+
 def test_a_wall_stands_where_nothing_limits_the_load():
     """Pressed onto the ground, or between fixed ones, a block carries any load."""
     both = lateral_resistance(boxes([0, 0, 1, 2], [1, 0, 1, 1], fixed=(1,)), mechanism=True)

@@ -38,6 +38,9 @@ _COMMANDS = {
     "cite": "Print how to cite drystone and the paper, as BibTeX.",
 }
 
+_PATHS = ("DIR", "FILE", "PHOTO", "PICTURE", "PLAN", "SHEET", "STONES", "WALL")
+"""What help calls paths, before the ending of a file."""
+
 _TASKS = {
     "first": ("demo", "stones"),
     "build": ("markers", "segment", "trace", "plan", "settings", "export"),
@@ -172,8 +175,15 @@ class _Parser(argparse.ArgumentParser):
         self.exit(int(coded.exit_code), f"drystone: {coded}\n")
 
     def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
-        """Refuse what a command does not know: it knows what was meant."""
+        """Refuse what a command does not know: it knows what was meant.
+
+        An empty path, as an unset variable of a shell gives, would be the current folder.
+        """
         found, rest = super().parse_known_args(args, namespace)
+        for action in self._actions:
+            kind = str(action.metavar).partition(".")[0]
+            if kind in _PATHS and getattr(found, action.dest, None) == "":
+                self.error(f"argument {'/'.join(action.option_strings) or kind}: the path is empty")
         if rest:
             self.error(f"unrecognized arguments: {' '.join(rest)}")
         return found, rest

@@ -96,16 +96,30 @@ def _refuse_stones(source: Mapping[str, Any], folder: Path) -> None:
 
 
 def blocks_to_json(wall: Wall, model: RigidBlockModel) -> dict[str, Any]:
-    """Return the block model (in source px) of a wall of outlines, in the plan's units."""
+    """Return the block model (in source px) of a wall of outlines, in the plan's units.
+
+    Its scale and the poses of its stones tell whether a plan is that of the same wall.
+    """
     outlines = wall.exact
     px_per_m = wall.site.px_per_m or 1.0
     polygons = {
         block: (outlines.polygons.polygon(place) / px_per_m).tolist()
         for place, block in enumerate(outlines.ids)
     }
+    poses = {
+        placement.stone_id: {
+            "angle_deg": placement.posed.angle_deg,
+            "source_centroid": list(placement.posed.stone.centroid),
+        }
+        for placement in wall.placements
+    }
     return {
         "mu": model.mu,
-        "blocks": [{"id": block.id, "polygon": polygons[block.id]} for block in model.blocks],
+        "px_per_m": wall.site.px_per_m,
+        "blocks": [
+            {"id": block.id, "polygon": polygons[block.id], **poses.get(block.id, {})}
+            for block in model.blocks
+        ],
         "interfaces": [
             {
                 "between": [interface.block, interface.other],

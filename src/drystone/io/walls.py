@@ -1,7 +1,8 @@
 """Reading what `analyse`, `measure` and `craft` are given: a plan, a block model, or stones."""
 
 import math
-from collections.abc import Mapping
+import reprlib
+from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -12,7 +13,7 @@ import shapely
 
 from drystone.contacts.blocks import pieces_apart
 from drystone.contacts.given import polygons_from_json, read_mu
-from drystone.errors import InputError, LabelImageError, Notice, UsageError
+from drystone.errors import InputError, LabelImageError, Notice, UsageError, meant
 from drystone.io.files import file_bytes, foreign, listed, naming
 from drystone.io.images import check_size
 from drystone.io.json_text import json_of
@@ -131,7 +132,7 @@ def read_wall(path: Path, settings: ReadSettings | None = None) -> GivenWall:
             "E118", f"{what} are: {options} has no meaning.", where=str(path), cure=cure
         )
     if model:
-        return GivenWall(None, blocks=content)
+        return GivenWall(None, blocks=content, notices=_unknown_keys(content))
     plan = read_plan(path)
     labels = read_image_of(plan, path.parent)
     if labels is None or not shows(labels, plan):
@@ -143,7 +144,38 @@ def read_wall(path: Path, settings: ReadSettings | None = None) -> GivenWall:
     if plan.settings.get("geometry") != "exact":
         _refuse_misplaced(labels, plan, path)
         return GivenWall(labels, plan)
-    return GivenWall(labels, plan, _blocks_of(plan, path))
+    return GivenWall(labels, plan, _blocks_of(plan, labels, path))
+
+
+_KEYS = {
+    "": ("blocks", "blocks_xywh", "mu", "mu_head", "friction", "interfaces", "px_per_m"),
+    "blocks": ("id", "polygon", "density", "fixed", "held", "angle_deg", "source_centroid"),
+    "friction": ("between", "mu"),
+    "interfaces": ("between", "points", "normal", "mu"),
+}
+"""Of a block model itself, and of the entries of its lists; those that plans write among them."""
+
+_REMARKS = ("comment", "meta", "name")
+"""Keys that anything may have, as it may have those that begin with _."""
+
+
+def _unknown_keys(content: Mapping[str, Any]) -> tuple[Notice, ...]:
+    """Name the keys of a block model that mean nothing (W307), each where it comes first."""
+    found, cures = dict[tuple[str, str], str](), dict[str, None]()
+    for part, known in _KEYS.items():
+        entries = content.get(part) if part else [content]
+        for place, entry in enumerate(entries if isinstance(entries, list) else (), 1):
+            for key in entry if isinstance(entry, dict) else ():
+                if key not in (*known, *_REMARKS) and not key.startswith("_"):
+                    where = f" ({part}, entry {place})" if part else ""
+                    found.setdefault((part, key), f"{reprlib.repr(key)}{where}")
+                    cures[meant(key, known).strip()] = None
+    if not found:
+        return ()
+    cure = " ".join(filter(None, cures)) or f"Keys of your own: {', '.join(_REMARKS)}, or _KEY."
+    return (
+        Notice("W307", f"keys that a block model does not have: {listed(found.values())}.", cure),
+    )
 
 
 def _stones(path: Path, settings: ReadSettings) -> GivenWall:
@@ -278,7 +310,7 @@ def on_ground(model: RigidBlockModel) -> bool:
     return fixed or any(face.other == GROUND for face in model.interfaces)
 
 
-def _blocks_of(plan: Plan, path: Path) -> dict[str, Any]:
+def _blocks_of(plan: Plan, labels: Labels, path: Path) -> dict[str, Any]:
     """Return the block model beside a plan on outlines; E133 when it is not that of the plan."""
     blocks = read_blocks_of(plan, path.parent)
     # A hole that is kept moves the centroid of its stone, by less than half of its length.
@@ -295,9 +327,32 @@ def _blocks_of(plan: Plan, path: Path) -> dict[str, Any]:
         for block, polygon in polygons.items()
     ):
         what = f"the {BLOCKS} beside the plan has its stones in other places than the plan."
+    elif other := next((o for o in _differing(plan, blocks, labels) if o[1] != o[2]), None):
+        what = "{} is {} by the plan, {} beside it.".format(*other)
     else:
         return blocks
     raise InputError("E133", what, where=str(path), cure=_TOGETHER)
+
+
+def _differing(
+    plan: Plan, blocks: Mapping[str, Any], labels: Labels
+) -> Iterator[tuple[str, Any, Any]]:
+    """Yield entries of a plan with their values, and those of the block model and the image.
+
+    Blocks of other hands, or of before, have no scale and no poses; the image has its size.
+    """
+    yield "settings.mu", plan.settings.get("mu", 0.58), read_mu(blocks, "mu", 0.58)
+    yield "units.px_per_m", plan.px_per_m, blocks.get("px_per_m", plan.px_per_m)
+    to_px = plan.working_scale * (plan.px_per_m or 1.0)
+    size, found = [plan.width * to_px, plan.height * to_px], list(labels.shape[::-1])
+    if max(abs(px - side) for px, side in zip(found, size, strict=True)) > 1.0:
+        yield f"the size of {image_name(plan)} (wall times units)", size, found
+    given = {block["id"]: block for block in blocks.get("blocks", ())}
+    for step in plan.stone_steps:
+        pose = {"angle_deg": step.angle_deg, "source_centroid": list(step.source_centroid)}
+        for key, value in pose.items():
+            entry = f"{key} of step {step.step} (stone {step.stone})"
+            yield entry, value, given.get(step.stone, {}).get(key, value)
 
 
 def _refuse_misplaced(labels: Labels, plan: Plan, path: Path) -> None:

@@ -82,7 +82,8 @@ def measure_labels(
     LabelImageError
         E104 when there is no stone in the image; E301 when the array is no picture of ids.
     UsageError
-        E121 when the wall's width or height is not positive and finite, or fills the memory.
+        E121 when `wall_px` is no width and height, positive and finite, or fills the memory; E138
+        when the area of the stones is below 0 or not finite.
 
     Examples
     --------
@@ -92,8 +93,12 @@ def measure_labels(
     >>> metrics.F_SF, metrics.T_LEVEL, metrics.E_FLUSH, metrics.stones
     (1.0, 0.0, 0.0, 4)
     """
-    if wall_px is not None and not all(0 < side < math.inf for side in wall_px):
-        what = f"a wall of {wall_px[0]:g} x {wall_px[1]:g} px has no room."
+    if stone_area_px is not None and not 0 <= stone_area_px < math.inf:
+        what, cure = f"{stone_area_px} is not an area.", "Give 0 or more, in px of the image."
+        raise UsageError("E138", what, where="stone_area_px", cure=cure)
+    sides: tuple[float, ...] = (1.0, 1.0) if wall_px is None else wall_px
+    if len(sides) != 2 or not all(0 < side < math.inf for side in sides):
+        what = f"a wall of {' x '.join(f'{side:g}' for side in sides)} px has no room."
         cure = "Give a wall with a positive, finite width and height."
         raise UsageError("E121", what, where="--wall", cure=cure)
     labels = picture_of_ids(labels)

@@ -8,7 +8,7 @@ import os
 import re
 import reprlib
 import types
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from operator import index
 from pathlib import Path
 from typing import Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
@@ -22,7 +22,7 @@ Called = TypeVar("Called", bound=Callable[..., Any])
 
 _KINDS = {
     bool: "true or false", int: "a whole number", float: "a number", str: "a text",
-    tuple: "a list", types.NoneType: "None",
+    tuple: "a list", Iterable: "a list", types.NoneType: "None",
 }  # fmt: skip
 
 

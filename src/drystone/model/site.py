@@ -9,6 +9,10 @@ from drystone.model.settings import typed
 MAX_SITE_PX = 50_000_000
 """A larger wall fills the memory; its stones are many times finer than planning needs."""
 
+SHORTEST, LONGEST, LARGEST = 1e-9, 1e9, 1e12
+"""Sides of a wall in metres and its area, as plan.schema.json has them: of an area, that of wedges.
+"""
+
 
 @typed
 @dataclass(frozen=True)
@@ -29,6 +33,12 @@ class Site:
     source_px : (float, float) or None
         Width and height in source px; None when they are those of the working px.
 
+    Raises
+    ------
+    UsageError
+        E121: it has no pixel, or too many; E125: the scale is not above 0; E138: the px in a metre
+        are not above 0, more than 1e9, or make a wall that no plan can have.
+
     Examples
     --------
     >>> Site.from_source(560, 160, scale=0.5)
@@ -42,6 +52,14 @@ class Site:
     source_px: tuple[float, float] | None = field(default=None, repr=False)
 
     def __post_init__(self) -> None:
+        if not 0 < self.scale < math.inf:
+            cure = "Give a share of the source resolution such as 0.5."
+            what = f"a scale of {self.scale} is not above 0."
+            raise UsageError("E125", what, where="--scale", cure=cure)
+        if self.px_per_m is not None and not 0 < self.px_per_m <= 1e9:
+            what = f"{self.px_per_m} px in a metre is not a scale."
+            cure = "Give a number above 0, up to 1e9, or none for a wall in px."
+            raise UsageError("E138", what, where="--px-per-m", cure=cure)
         wall = f"a wall of {self.width_px} x {self.height_px} working pixels"
         if self.width_px < 1 or self.height_px < 1:
             cure = "Give a larger wall or a larger --scale."
@@ -49,6 +67,13 @@ class Site:
         if self.width_px * self.height_px > MAX_SITE_PX:
             what = f"{wall} is too large; {MAX_SITE_PX} are the most."
             raise UsageError("E121", what, where="--wall", cure="Give a smaller --scale.")
+        least, most = sorted(side / (self.px_per_m or 1.0) for side in self.extent_px)
+        if self.px_per_m and not (
+            least >= SHORTEST and most <= LONGEST and least * most <= LARGEST
+        ):
+            what = f"with {self.px_per_m:g} px in a metre the wall is {most:g} x {least:g} m."
+            cure = "Give the px of the source image in a metre of the wall."
+            raise UsageError("E138", what, where="--px-per-m", cure=cure)
 
     @classmethod
     def from_source(
@@ -57,17 +82,14 @@ class Site:
         """Make the site of a wall given in source px: working size floor(size * scale + 0.5).
 
         UsageError: E121: it is too small or too large at this scale; E127: its size is not a finite
-        number; E138: the px in a metre are not above 0, or more than 1e9.
+        number; E125, E138: as of a :class:`Site`.
         """
         if not (math.isfinite(width) and math.isfinite(height)):
             what = f"{width} x {height} px is not a wall size."
             cure = "Give a positive, finite width and height."
             raise UsageError("E127", what, where="--wall", cure=cure)
-        if px_per_m is not None and not 0 < px_per_m <= 1e9:
-            what = f"{px_per_m} px in a metre is not a scale."
-            cure = "Give a number above 0, up to 1e9, or none for a wall in px."
-            raise UsageError("E138", what, where="--px-per-m", cure=cure)
-        size = working_px(width, scale), working_px(height, scale)
+        known = scale if math.isfinite(scale) else 1.0  # the site itself refuses others
+        size = working_px(width, known), working_px(height, known)
         return cls(*size, scale, px_per_m, (width, height))
 
     @property

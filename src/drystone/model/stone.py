@@ -31,7 +31,7 @@ class Stone:
     Parameters
     ----------
     id : int
-        Label in the source image, positive.
+        Label in the source image, from 1 to 4294967295.
     mask : (h, w) bool array
         The stone's pixels, cropped to their bounding box, row 0 at the top, one connected piece.
         Holes are filled unless they are kept: then area and centroid are without them, and the
@@ -61,8 +61,8 @@ class Stone:
 
     def __post_init__(self) -> None:
         mask = np.array(self.mask, dtype=bool)
-        if self.id <= 0:
-            raise ValueError(f"id must be positive, not {self.id}")
+        if not 0 < self.id < 2**32:
+            raise ValueError(f"id must be a whole number from 1 to 4294967295, not {self.id}")
         if mask.ndim != 2 or not mask.any():
             raise ValueError("mask must be a two-dimensional array with at least one pixel")
         mask.flags.writeable = False

@@ -32,10 +32,10 @@ class Step:
 
     @property
     def pose3d(self) -> Pose3d:
-        """Where the stone goes in the wall: :meth:`place_pose` in the plane of the front face.
+        """Where the centroid of its front face goes in the wall (frame W), of any thickness.
 
-        A robot that holds stones in the middle of a wall of some thickness asks
-        :meth:`place_pose` for it.
+        A robot asks :meth:`place_pose` and :meth:`pick_pose`, with one thickness for both: they
+        are of one point of the stone.
         """
         return self.place_pose()
 
@@ -55,8 +55,8 @@ class Step:
     def pick_pose(self, thickness_m: float = 0.0) -> Pose3d:
         """Return where the stone lies in the picture that it was read from (frame P).
 
-        Its centroid is half of its thickness above the ground.  Errors are those of
-        :meth:`place_pose`.
+        Its centroid is half of its thickness above the ground.  The face that the camera sees is
+        the front of the wall, a whole one above it.  Errors are those of :meth:`place_pose`.
         """
         x, y = self.action.stabilised.placement.posed.stone.centroid
         metres = metres_of(1.0, self.build.wall.site.px_per_m)

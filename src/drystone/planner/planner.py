@@ -200,6 +200,7 @@ class Planner:
         self.build = build
         self.stopped = None  # that was of another wall
 
+    @typed
     def observe(self, measured: Measurement, *, lost: Iterable[int] = ()) -> Observation:
         """Go on from the wall as it was really built.
 

@@ -120,8 +120,9 @@ def fitting_stones(
     if too_large and not settings.skip_too_large:
         raise UsageError(
             "E120",
-            f"stones {', '.join(map(str, too_large))} fit into the wall of "
-            f"{site.width_px} x {site.height_px} working px in no orientation.",
+            f"no orientation of stone{'s' * (len(too_large) > 1)} "
+            f"{', '.join(map(str, too_large))} fits into the wall of "
+            f"{site.width_px} x {site.height_px} working px.",
             where="--wall",
             cure="Leave them out with --skip-too-large, or build a larger wall.",
         )

@@ -62,6 +62,11 @@ def lateral_resistance(
         "unbounded" when nothing limits the load, as for a model without free blocks; "failed"
         when no solver has an answer that can be certified.  Never raises for a valid model.
 
+    Raises
+    ------
+    ValueError
+        There is no such solver.
+
     Examples
     --------
     >>> import numpy as np

@@ -97,7 +97,7 @@ def _given(wall: GivenWall, blocks: dict[str, Any], mu: float, asked: ModelReque
     idle = [f"{one} and {other}" for one, other in pairs if frozenset((one, other)) not in touching]
     what = f"blocks do not touch, so their friction is left aside: {listed(idle)}."
     cure = "Correct the ids, or where the blocks lie."
-    notices = (Notice("W306", what, cure),) if idle else ()
+    notices = (*wall.notices, *([Notice("W306", what, cure)] if idle else ()))
     return ModelledWall(model, outlines, notices=notices, remarks=remarks)
 
 
@@ -156,7 +156,7 @@ def _with_closed_gaps(
         settled, moved = settle_gaps(labels)
         made = _made(wall, settled, model_from_labels(settled, mu), moved)
         farthest = max((max(abs(dx), abs(dy)) for dx, dy in moved.values()), default=0)
-        done = f"{len(moved)} stones lowered by up to {farthest} px; "
+        done = f"{counted(len(moved), 'stone')} lowered by up to {farthest} px; "
     spread = gap_spread(labels, reach, mu, partial(_resistance, asked))
     return replace(made, remarks={"gaps": f"{done}{spread}"}, joints="drawn")
 

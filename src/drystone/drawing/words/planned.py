@@ -80,7 +80,9 @@ def rows(result: PlanResult, folder: Path) -> list[tuple[str, str]]:
     again = f"; --budget {plan.walls} builds the same again" if plan.walls != 1 else ""
     unused = f", unused: {', '.join(map(str, plan.unused))}" if left else ""
     most = (
-        "1 is a full wall" if round(bound, 3) == 1.0 else f"the maximum for these stones is {number(bound)}"
+        "1 is a full wall"
+        if round(bound, 3) == 1.0
+        else f"the maximum for these stones is {number(bound)}"
     )
     broken = [RULES[name].title for name in _craft(result).broken]
     craft = f"breaks {', '.join(broken)}; see drystone craft" if broken else "breaks no rule"

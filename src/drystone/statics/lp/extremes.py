@@ -8,6 +8,7 @@ from typing import Literal, Protocol
 
 import numpy as np
 
+from drystone.model.settings import of_type
 from drystone.statics.lp.certificate import certify, in_equilibrium
 from drystone.statics.lp.highs import HighsSession, WarmSession
 from drystone.statics.lp.program import EquilibriumProgram, Floats, Solution
@@ -142,7 +143,7 @@ def _sessions(
         "refined": lambda: WarmSession(program),
     }
     if solver != "auto":
-        return [kinds[solver]]
+        return [kinds[of_type(solver, Solver, "solver")]]
     many = MANY_BLOCKS_FOR_A_VERTEX if mechanism else MANY_BLOCKS
     if len(program.block_ids) < many:
         return list(kinds.values())
