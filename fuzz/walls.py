@@ -13,7 +13,7 @@ from drystone.io.wall_image import write_labels
 from fuzz.mutate import Case
 from fuzz.pictures import npys, photos, pngs, tiffs
 
-_PLANS = (("paper", 5, None), ("best", 5, 500.0))
+_PLANS = (("paper", 5, None), ("best", 3, 500.0))
 """Method, seed of the stones, and scale of plans that have a wedge."""
 
 
