@@ -1,5 +1,6 @@
 """Block models given as rectangles or polygons (DESIGN §2): a dict in, a model out."""
 
+from collections import Counter
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 from math import inf, nan, sqrt
@@ -79,8 +80,8 @@ def model_from_json(data: Mapping[str, Any]) -> RigidBlockModel:
     """
     given = _given_blocks(data)
     ids = [block.id for block, _ in given]
-    if len(set(ids)) != len(ids):
-        raise bad("two blocks have the same id.", "blocks", "Give every block its own id.")
+    if twice := [block for block, count in Counter(ids).items() if count > 1]:
+        raise bad(f"two blocks have the id {twice[0]}.", "blocks", "Give each its own.")
     corners = {block.id: polygon for block, polygon in given}
     blocks = tuple(_measured(block, polygon) for block, polygon in given)
     weights = [block.weight for block in blocks if not block.fixed]
@@ -141,9 +142,10 @@ def _polygon_block(place: int, entry: Any) -> tuple[Block, Points]:
         what = f"its id is {entry.get('id')!r}."
         raise bad(what, where, "Give a whole number from 1 to 4294967295.")
     density = float(read_numbers(entry.get("density", 1.0), (), where))
-    if density < SMALLEST or not isinstance(fixed, bool):
-        what = f"density must be above 0 ({SMALLEST:g} or more) and fixed true or false."
-        raise bad(what, where, "Correct it.")
+    if not isinstance(fixed, bool):
+        raise bad(f"fixed is {fixed!r}.", where, "Give true or false.")
+    if density < SMALLEST:
+        raise bad(f"density must be above 0 ({SMALLEST:g} or more).", where, "Correct it.")
     held = entry.get("held", [])
     if not isinstance(held, list | tuple) or not all(one in FREEDOMS for one in held):
         raise bad(f"held is {held!r}.", where, 'List what is held: "x", "y", "turn".')

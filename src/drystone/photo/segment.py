@@ -65,8 +65,8 @@ class LeftOut:
 BAND_PX = 4
 """How far an outline may be moved at a time."""
 
-ROUNDS, STILL = 4, 2e-5
-"""How often at most: until hardly a pixel moves, as a share of all.
+ROUNDS = 3
+"""How often at most.  All are moved twice; then only those near what still moves by some pixels.
 
 A joint that was filled at first is cleared from its ends: half way there are spikes."""
 
@@ -291,7 +291,8 @@ def refine_outlines(lab: Planes, stone: Mask, usable: Mask) -> Mask:
 
     `stone` is where stones are, about; `usable` what the photograph shows of ground and stones.
     """
-    for _ in range(ROUNDS):
+    near = np.ones_like(stone)
+    for turn in range(ROUNDS):
         before = stone
         inner = ndimage.distance_transform_edt(stone)
         outer = ndimage.distance_transform_edt(~stone)
@@ -301,8 +302,12 @@ def refine_outlines(lab: Planes, stone: Mask, usable: Mask) -> Mask:
         contrast = np.linalg.norm(way, axis=-1)
         share = ((lab - there) * way).sum(axis=-1) / np.maximum(contrast, 1e-6) ** 2
         moved = np.where(band & (contrast > _LEAST_CONTRAST), share > 0.5, stone)
-        stone = ndimage.median_filter(moved.astype(np.uint8), 5).astype(bool)
-        if np.count_nonzero(stone != before) <= STILL * stone.size:
+        smooth = ndimage.median_filter(moved.astype(np.uint8), 5).astype(bool)
+        stone = np.where(near, smooth, before)
+        if turn > 0:
+            moving = ndimage.binary_opening(stone != before, np.ones((3, 3)))
+            near = ndimage.binary_dilation(moving, iterations=2 * BAND_PX)
+        if not near.any():
             break
     return stone
 
