@@ -209,7 +209,7 @@ class GapSweep:
     chosen_px: int  # 0 to leave the gaps open
     stands_from_px: int | None  # None when it stands with none of the widths
     steady: bool  # whether the load multiplier hardly changes from the chosen width on
-    upto_px: float  # as far as that is asked
+    upto_px: float  # the widest width of which that is asked
 
     def within(self) -> tuple[float, float] | None:
         """Return the least and the greatest load multiplier from the chosen width on."""

@@ -48,7 +48,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     own = () if arguments.settings is None else (Path(arguments.settings),)
     names = (STONES, *WRITTEN)
     refuse_inputs(own, [*(folder / name for name in names), *files_of_choice(folder)])
-    # A third more than the wall holds: with a sixth, one small wall in four ended too low.
+    # A third more than the wall holds: with a sixth and few tries, one in four ended too low.
     settings = RubbleSettings(count=32, width_px=1485, height_px=WALL[1])
     made = rubble_stones(settings, np.random.default_rng(arguments.seed))
     if arguments.scale is None:
