@@ -372,7 +372,7 @@ def test_trials_are_those_of_walls_that_are_built_anew(careless):
         )
         for count in (80, 81)
     )
-    assert many == 2.0 * few
+    assert many == 3.5 * few
 
 
 def test_no_stone_is_laid_where_it_falls_more_often_than_is_bearable(careless):
@@ -388,5 +388,5 @@ def test_no_stone_is_laid_where_it_falls_more_often_than_is_bearable(careless):
     careful = scenes.finish(Planner(scenes.ROUNDED, scenes.ROUNDED_SITE, settings=settings))
     found = shares(careful.workshop.seats, careful)
     assert None not in found
-    assert len(found) >= 0.75 * len(scenes.ROUNDED)
+    assert len(found) >= 0.65 * len(scenes.ROUNDED)
     assert np.mean(found) < 0.02

@@ -18,7 +18,7 @@ from drystone.planner.evaluate import Evaluator
 from drystone.planner.profile import Profile
 from drystone.planner.proposing import RasterProposer, StoneTrial
 from drystone.planner.settings import METHODS
-from drystone.search.plan_result import mean_top
+from drystone.search.goal import mean_top
 from drystone.settle.rest import placed_outline
 from drystone.verify import check_plan
 from tests.naive.planner import SlowPlanner

@@ -220,7 +220,8 @@ def test_an_interrupt_and_a_process_that_dies_keep_the_best_wall_so_far(error, m
 
     settings = scenes.greedy({"search": {"budget": 50, **SMALL}})
     result = planned_wall(settings, seed=5, callbacks=Impatient())
-    assert [one.walls for one in told] == [walls for walls in (1, 2, 3, 5) if walls <= most]
+    walls = [one.walls for one in told if not one.repairs]
+    assert walls == [count for count in (1, 2, 3, 5) if count <= most]
     assert result.plan.settings["search"]["budget"] == most
     scenes.proven(result, STONES)
     if error is BrokenProcessPool:

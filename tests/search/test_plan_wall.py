@@ -13,20 +13,12 @@ from drystone.model.wall import Group, Wall
 from drystone.model.wedge_shape import WedgeShape
 from drystone.planner.deadline import Deadline, TimeIsUp
 from drystone.planner.events import INTERRUPTED, OUT_OF_TIME, Stopped
-from drystone.search import whole_search
+from drystone.search import goal, whole_search
 from drystone.search.chain import _opened
-from drystone.search.goal import FoundWall, Rehearsals
+from drystone.search.goal import FoundWall, stays_at_every_step
 from drystone.search.packed import PackedWall, found_again
 from drystone.search.warm_start import begin_with
-from drystone.search.whole_search import (
-    THOROUGH,
-    as_found,
-    repaired,
-    run_to_end,
-    stays_at_every_step,
-    surest,
-    with_the_rest,
-)
+from drystone.search.whole_search import as_found, run_to_end, surest, with_the_rest
 from drystone.search.yard import Yard
 from tests.planner import scenes
 from tests.verify.exact_examples import with_stone
@@ -293,35 +285,6 @@ def half_of(planner):
     return PackedWall.of(FoundWall.of(half))
 
 
-def test_stones_that_fall_in_rehearsals_are_taken_out_or_laid_elsewhere():
-    careless = scenes.greedy({"search": {"budget": 2}, "settle": {"trials": 0}})
-    site = Site.from_source(160, 100, 0.5)
-    planner = scenes.finish(Planner(scenes.ROUNDED, site, seed=0, settings=careless))
-    yard = Yard.of(planner)
-    wall = FoundWall.of(planner).judged(yard, THOROUGH)
-    assert wall.falls.first
-    better = repaired(planner, wall, turns=1)
-    often = Rehearsals(yard, 20, 99)
-    share = often.falls(wall.build).share
-    assert often.falls(better.build).share < 0.7 * share
-    nothing = FoundWall.of(Planner(scenes.bricks(), Site(60, 20), settings=careless))
-    assert repaired(planner, nothing).build is nothing.build
-
-
-def test_stones_that_move_when_the_wall_fails_are_taken_out_or_laid_elsewhere():
-    stones = scenes.blocks({1: (40, 12), 2: (40, 12), 3: (8, 24)})
-    goal = {"fallen": 0.0, "filling": 1.0}  # strength counts for more than a small stone
-    careless = {"settle": {"trials": 0}, "orientations": "sf"}
-    settings = scenes.greedy({"search": {"budget": 2}, "goal": goal, **careless})
-    planner = scenes.finish(Planner(stones, Site(42, 60), settings=settings))
-    wall = FoundWall.of(planner).judged(Yard.of(planner), THOROUGH)
-    assert wall.movers == (3,)  # the slender one on top
-    assert wall.figures.F_LR_coulomb == pytest.approx(8 / 24 / 0.58, abs=0.03)
-    better = repaired(planner, wall)
-    assert scenes.ids(better) == [1, 2]
-    assert better.figures.F_LR_coulomb == pytest.approx(1.0)
-
-
 def test_a_wall_to_choose_is_as_it_was_found(planner):
     half = half_of(planner)
     found, why = as_found(planner, half)
@@ -341,7 +304,7 @@ def raising(error):
     return raises
 
 
-@pytest.mark.parametrize("place", ["surest", "repaired", "with_the_rest"])
+@pytest.mark.parametrize("place", ["surest", "repairs", "with_the_rest"])
 def test_an_interrupt_at_the_end_keeps_the_best_as_it_was_found(place, planner, found, monkeypatch):
     monkeypatch.setattr(whole_search, place, raising(KeyboardInterrupt))
     cut = run_to_end(planner)
@@ -418,14 +381,26 @@ def test_a_wall_that_falls_when_it_is_let_go_gives_way_to_one_that_stays(planner
     def fall(model, *_):
         return len(model.blocks) == lost or None
 
-    monkeypatch.setattr(whole_search, "fall_of", fall)
+    monkeypatch.setattr(goal, "fall_of", fall)
     other, _ = surest(planner, walls)
     assert len(other.build.actions) != lost
-    monkeypatch.setattr(whole_search, "fall_of", lambda *_: True)
+    monkeypatch.setattr(goal, "fall_of", lambda *_: True)
     again, _ = surest(planner, walls)
     assert again.merit == best.merit  # all fall
 
 
-def test_a_repair_that_time_cuts_off_is_said(planner, found, monkeypatch):
-    monkeypatch.setattr(whole_search, "repaired", raising(TimeIsUp))
-    assert (found.cut, run_to_end(planner).cut) == (False, True)
+@pytest.mark.parametrize("error", [TimeIsUp, KeyboardInterrupt])
+def test_repairs_made_before_an_end_stay(error, planner, found, monkeypatch):
+    half = found_again(half_of(planner), Yard.of(planner))
+
+    def repairs(*_):
+        yield half
+        raise error
+
+    monkeypatch.setattr(whole_search, "repairs", repairs)
+    monkeypatch.setattr(whole_search, "with_the_rest", lambda *asked: (*as_found(*asked), False))
+    ended = run_to_end(planner)
+    assert scenes.ids(ended.planner) == scenes.ids(half)
+    interrupted = error is KeyboardInterrupt
+    assert (ended.cut, ended.stopped is INTERRUPTED) == (not interrupted, interrupted)
+    assert not found.cut

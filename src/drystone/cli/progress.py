@@ -39,8 +39,10 @@ class _StepBar(Callbacks):
         if self._walls is None:
             self._walls = self._bar.add_task("walls", total=self._total)
         # With the bar and the time that is left it fits into a line of 80 characters.
+        turn = incumbent.repairs
         text = (
-            f"{incumbent.walls} walls; best: {incumbent.stones} stones, "
+            f"{f'repairs {turn}' if turn else f'{incumbent.walls} walls'}; "
+            f"best: {incumbent.stones} stones, "
             f"F_SF {incumbent.F_SF:.3f}, F_LR {incumbent.F_LR:.2f}"
         )
         spent = time.monotonic() - self._started

@@ -92,6 +92,7 @@ class Incumbent:
     F_LR: float
     F_AV: float
     F_AH: float
+    repairs: int = 0  # turns in which repairs of it were looked for, once the search has ended
 
 
 class Callbacks:
@@ -101,4 +102,4 @@ class Callbacks:
         """Follow the first pass: an action was chosen."""
 
     def on_walls(self, incumbent: Incumbent) -> None:
-        """Follow the search: more walls have been built."""
+        """Follow the search: more walls have been built, or repairs of the best looked for."""

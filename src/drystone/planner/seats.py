@@ -26,11 +26,14 @@ from drystone.settle.settings import SettleSettings
 MARGIN = 1.25
 """A place is tried with a hand's errors times this, so that it is sure with some to spare."""
 
-FALL = 8.0
-"""A stone that would fall in all trials is laid when it is larger than so many mean stones."""
+FALL, FALL_OF_MANY = 14.0, 4.0
+"""A stone that would fall in all trials is laid when it is larger than so many mean stones.
+
+A wall that is not whole counts as one without :data:`drystone.search.goal.STOPPED` more stones.
+With more than :data:`MANY` stones it hardly ever stays whole, and is to be finished.
+"""
 
 MANY = 80
-"""A wall of more stones hardly ever stays whole: for it `FALL` is half, so that it is finished."""
 
 KNOWN_BYTES = 1 << 27
 """Walls of trials that are remembered at most, about: those of fifty to a hundred steps."""
@@ -53,7 +56,7 @@ class Seats:
     ) -> None:
         self.mean_size = mean_size
         self._pinned = pinned
-        self._fall = FALL if count <= MANY else 0.5 * FALL
+        self._fall = FALL if count <= MANY else FALL_OF_MANY
         self._errors = BuilderErrors.of_precision(MARGIN * HAND, mean_size)
         self._bare = [bare_wall(mu, settle)] * settle.trials
         self._known = RecentlyUsed[bytes, list[BuiltWall]](KNOWN_BYTES)  # by what was laid

@@ -8,11 +8,10 @@ on from where it stood (:mod:`drystone.search.state`) to the same walls.
 """
 
 import pickle
-from collections.abc import Callable, Generator, Iterator, Sequence
+from collections.abc import Generator, Iterator, Sequence
 from concurrent.futures import Executor
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from typing import TypeVar
 
 from drystone.planner.build import Solves
 from drystone.planner.deadline import TimeIsUp
@@ -21,6 +20,7 @@ from drystone.search.chain import Job, more_links, one_pass, wedged
 from drystone.search.goal import FoundWall
 from drystone.search.operators import Credits
 from drystone.search.packed import PackedWall
+from drystone.search.processes import mapped
 from drystone.search.state import Chains, Link, Progress, Reached, SearchState
 from drystone.search.yard import Yard
 
@@ -44,8 +44,6 @@ STALE = 8
 
 PROMISE = 0.6
 """So much more than others, in units of merit, planned walls win by the changes of chains."""
-
-Result = TypeVar("Result")
 
 
 def searching(
@@ -113,7 +111,7 @@ class _Round:
         while (batch := next_batch(found, search)) is not None:
             numbers, share = batch
             tasks = [(self.job, self.number * search.passes + k, share) for k in numbers]
-            for wall in _mapped(self.executor, one_pass, tasks):
+            for wall in mapped(self.executor, one_pass, tasks):
                 if wall is None:
                     return None
                 found = (*found, wall)
@@ -132,7 +130,7 @@ class _Round:
             counts = [min(each, max(0, left - k * each)) for k in range(search.chains)]
             asked = range(at.turn, sum(count > 0 for count in counts))
             tasks = [(self.job, at.links[k], counts[k]) for k in asked]
-            for link, k in zip(_mapped(self.executor, more_links, tasks), asked, strict=True):
+            for link, k in zip(mapped(self.executor, more_links, tasks), asked, strict=True):
                 if link is None:
                     return None
                 built = link.done - at.links[k].done
@@ -186,24 +184,6 @@ def _shared(links: list[Link]) -> list[Link]:
         best = links[first].best
         links[last] = replace(links[last], now=best, best=best)
     return links
-
-
-def _mapped(
-    executor: Executor | None,
-    work: Callable[..., Result | None],
-    tasks: Sequence[tuple[object, ...]],
-) -> Iterator[Result | None]:
-    """Do tasks, and give their results in order; after one that came too late there is no more."""
-    if executor is None:
-        yield from (work(*task) for task in tasks)
-        return
-    futures = [executor.submit(work, *task) for task in tasks]
-    try:
-        for future in futures:
-            yield future.result()
-    finally:
-        for future in futures:
-            future.cancel()
 
 
 def promised(wall: PackedWall, share: float = 1.0) -> float:

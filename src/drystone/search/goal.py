@@ -14,12 +14,15 @@ from drystone.craft.masonry import Masonry
 from drystone.craft.settings import CraftSettings
 from drystone.kernels.as_built import Built
 from drystone.metrics.measure import measure_labels
+from drystone.metrics.shape import top_profile
 from drystone.model.builder import HAND, BuilderErrors, put_down_with, stratified
 from drystone.model.outlines import Outlined
-from drystone.model.wall import Group
+from drystone.model.wall import Group, Wall
 from drystone.planner.build import Build, Solves
+from drystone.planner.deadline import NEVER, Deadline
 from drystone.planner.planner import Planner
 from drystone.planner.search_settings import GoalSettings
+from drystone.planner.sturdy import ROUNDS
 from drystone.planner.vary import REHEARSAL_DRAWS
 from drystone.planner.workshop import Workshop
 from drystone.search.courses import CoursePlan
@@ -28,6 +31,8 @@ from drystone.search.yard import Yard
 from drystone.settle.putting import bare_wall
 from drystone.statics.flow.flow_search import STARTS, NonassociativeSettings
 from drystone.statics.flow.nonassociative import nonassociative_resistance
+from drystone.statics.flow.release import fall_of
+from drystone.statics.lp.program import assemble
 from drystone.statics.result import LimitStatus, Mechanism
 
 MISSING = 10.0
@@ -39,8 +44,14 @@ SCANNED = CraftSettings(sample=0.07)
 QUICK = NonassociativeSettings(starts=STARTS[:1], random_starts=0, paths=(), let_go=False)
 """One start of twelve finds the least load without dilatancy of most walls."""
 
+THOROUGH = NonassociativeSettings()
+"""How the load without dilatancy is looked for in the best walls."""
+
 STOPPED = 14
 """A builder who has to mend a wall loses as much as with so many stones."""
+
+FILLED, FILLED_TOP = 0.99, 0.9
+"""A wall is incomplete when its filling (DESIGN 2) and its mean top, over its height, are below."""
 
 NEARLY = 4
 """Power of how near the worst stone of a run came to falling: so fewer runs tell as much."""
@@ -239,6 +250,28 @@ class FoundWall:
         figures = replace(figures, F_LR_coulomb=carried)
         merit = merit_of(figures, possible_filling(yard.workshop), goal)
         return replace(self, figures=figures, merit=merit, falls=falls, movers=movers)
+
+
+def mean_top(wall: Wall) -> float:
+    """Return the mean height of the wall's top over its columns, as a share of its height."""
+    return float(np.mean(top_profile(wall.labels))) / wall.site.height_px
+
+
+def is_high(wall: Wall) -> bool:
+    """Say whether a wall is filled, or its top reaches as high as that of a complete one."""
+    return wall.filling >= FILLED or mean_top(wall) >= FILLED_TOP
+
+
+def stays_at_every_step(build: Build, until: Deadline = NEVER) -> bool:
+    """Return whether a wall on outlines stays as it is when all of it is let go after each step.
+
+    Forces that would hold it may exist that do not arise (DESIGN 4.8).  For the newest stone alone
+    that is asked whenever a stone is placed; for all, which takes longer, only of the best walls.
+    """
+    if build.wall.outlines is None:
+        return True
+    models = (action.model for action in build.actions)
+    return all(fall_of(m, assemble(m), ROUNDS, until.look) is None for m in models)
 
 
 def _movers(build: Build, mechanism: Mechanism | None) -> tuple[int, ...]:

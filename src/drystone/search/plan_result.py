@@ -7,11 +7,8 @@ from dataclasses import dataclass, field, replace
 from importlib.metadata import version
 from typing import Any
 
-import numpy as np
-
 from drystone.contacts.settled import model_of_outlines
 from drystone.errors import Notice
-from drystone.metrics.shape import top_profile
 from drystone.model.plan import Plan, PlanMetrics
 from drystone.model.wall import Wall
 from drystone.planner.assemble import assemble_plan, plan_metrics
@@ -21,18 +18,12 @@ from drystone.planner.events import INTERRUPTED, Stopped
 from drystone.planner.planner import Planner
 from drystone.planner.profile import Profile
 from drystone.planner.settings import PlannerSettings
-from drystone.search.goal import usable_area_px
+from drystone.search.goal import FILLED, FILLED_TOP, mean_top, usable_area_px
 from drystone.shown import html_of
 from drystone.statics.flow.nonassociative import nonassociative_resistance
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LateralResistance
-
-FILLED = 0.99
-"""Filling from which a plan is complete whatever its top (DESIGN 2)."""
-
-FILLED_TOP = 0.9
-"""A plan is incomplete when its mean top stays below this share of the wall's height."""
 
 MOST_WITHOUT_DILATANCY = 150
 """Twelve starts take some ten seconds for so many blocks, and the time grows with their square."""
@@ -164,7 +155,7 @@ def result_of(planner: Planner) -> PlanResult:
 
     Examples
     --------
-    >>> import drystone as ds
+    >>> import drystone as ds, numpy as np
     >>> bricks = ds.generate.BrickSettings(count=3, height_px=10, aspect=2)
     >>> stones = ds.generate.brick_stones(bricks, np.random.default_rng(1))
     >>> planner = ds.Planner(stones, ds.Site(60, 10))
@@ -226,8 +217,3 @@ def other_resistances(
             model = model_of_outlines(outlines, settings.mu, share * settle.contact_px, setback)
             found[name] = lateral_resistance(model).value
     return found
-
-
-def mean_top(wall: Wall) -> float:
-    """Return the mean height of the wall's top over its columns, as a share of its height."""
-    return float(np.mean(top_profile(wall.labels))) / wall.site.height_px

@@ -5,12 +5,12 @@ import os
 import signal
 import threading
 import weakref
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor, ThreadPoolExecutor
 from contextlib import AbstractContextManager, contextmanager, suppress
 from multiprocessing import Pipe
 from multiprocessing.connection import Connection
-from typing import Any
+from typing import Any, TypeVar
 
 from drystone.search.interrupts import SIGNALS, blocked, held
 
@@ -28,6 +28,27 @@ RARELY = 100_000
 
 With the usual 700 it takes a twelfth of the time of a search.
 """
+
+
+Result = TypeVar("Result")
+
+
+def mapped(
+    executor: Executor | None,
+    work: Callable[..., Result | None],
+    tasks: Sequence[tuple[object, ...]],
+) -> Iterator[Result | None]:
+    """Do tasks, and give their results in order; after one that came too late there is no more."""
+    if executor is None:
+        yield from (work(*task) for task in tasks)
+        return
+    futures = [executor.submit(work, *task) for task in tasks]
+    try:
+        for future in futures:
+            yield future.result()
+    finally:
+        for future in futures:
+            future.cancel()
 
 
 def processes(count: int) -> AbstractContextManager[Executor | None]:

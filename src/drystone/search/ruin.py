@@ -67,10 +67,16 @@ def _nearest(build: Build, point: Points, count: int) -> Ids:
     return _least(build, np.hypot(*(at - point).T), count)
 
 
+def around(build: Build, stone: int, count: int) -> Ids:
+    """Take a stone and those nearest to it."""
+    ids, at = centres(build)
+    return _nearest(build, at[ids.index(stone)], count)
+
+
 def disc(build: Build, count: int, rng: Generator) -> Ids:
     """Take the stones around one of them."""
-    ids, at = centres(build)
-    return _nearest(build, at[int(rng.integers(len(ids)))], count)
+    groups = build.wall.groups
+    return around(build, groups[int(rng.integers(len(groups)))].placement.stone_id, count)
 
 
 def top(build: Build, count: int, _: Generator) -> Ids:
@@ -145,8 +151,7 @@ def unsure(build: Build, count: int, rng: Generator) -> Ids:
     first = rehearse(groups, errors, rng, mu=build.model.mu).first_fall
     if first is None:
         return disc(build, count, rng)
-    ids, at = centres(build)
-    return _nearest(build, at[ids.index(first)], count)
+    return around(build, first, count)
 
 
 RUINS: tuple[Ruin, ...] = (disc, top, column, end, joint, step, mechanism, unsure)

@@ -8,40 +8,27 @@ from contextlib import suppress
 from itertools import islice
 from typing import NamedTuple
 
-import numpy as np
-
 from drystone.errors import PlanError
-from drystone.planner.build import Build
 from drystone.planner.deadline import NEVER, Deadline, TimeIsUp
 from drystone.planner.events import INTERRUPTED, OUT_OF_TIME, Incumbent, Stopped
 from drystone.planner.planner import Planner
-from drystone.planner.sturdy import ROUNDS
-from drystone.planner.vary import REPAIR_DRAWS
 from drystone.search.anytime import searching
-from drystone.search.chain import forget, without
-from drystone.search.goal import LAST_RUNS, FoundWall, Rehearsals, WallFigures
+from drystone.search.chain import forget
+from drystone.search.goal import (
+    LAST_RUNS,
+    THOROUGH,
+    FoundWall,
+    Rehearsals,
+    WallFigures,
+    stays_at_every_step,
+)
 from drystone.search.interrupts import held
 from drystone.search.packed import PackedWall, archived, found_again
+from drystone.search.repair import TURNS, repairs
 from drystone.search.state import Progress, SearchState
-from drystone.search.wedging import one_more_wedge
 from drystone.search.yard import Yard
-from drystone.statics.flow.flow_search import NonassociativeSettings
-from drystone.statics.flow.release import fall_of
-from drystone.statics.lp.program import assemble
 
 _FOUND = Stopped("search", "kept as the search found it")
-
-THOROUGH = NonassociativeSettings()
-"""How the load without dilatancy is looked for at the end."""
-
-REPAIRS, WORTH = 8, 0.1
-"""So often repairs of the best wall are looked for at most; each gains at least so much merit."""
-
-LOOK_RUNS = 24
-"""So often repairs are rehearsed until it is known which could be better."""
-
-WEDGED = 4
-"""So many of the stones that fall first get one more wedge in turn, wherever there is room."""
 
 JUDGED_AGAIN = 8
 """So many of the best walls of a search are looked at thoroughly at most."""
@@ -98,6 +85,8 @@ def run_to_end(
             where="checkpoint",
             cure="Remove it and give the same command again: the partial plan is gone on from.",
         ) from error
+    finally:
+        forget()
 
 
 def _improved(
@@ -119,19 +108,18 @@ def _improved(
                 planner.solves = progress.solves
                 # First, so that who is interrupted in a callback goes on from this wall.
                 told(progress)
-                planner.callbacks.on_walls(_incumbent(progress))
+                planner.callbacks.on_walls(_incumbent(progress.walls, progress.best))
     except BrokenProcessPool:
         lost = True
     except KeyboardInterrupt:
         interrupted = True  # every wall of a search is complete
-    finally:
-        forget()
     with suppress(KeyboardInterrupt):
         if not interrupted:
             if isinstance(start, Stopped) and (progress is None or progress.walls == 1):
                 return SearchEnd(planner, start, 1, progress.kept if progress else (), lost)
             assert progress is not None  # noqa: S101 - what a search goes on from comes first
-            return _ended(planner, progress, Deadline.after(grace_s, until.clock), lost=lost)
+            grace = Deadline.after(grace_s, until.clock)
+            return _ended(planner, progress, grace, executor, lost=lost)
     with suppress(KeyboardInterrupt), held():
         ended = cut_off(planner, progress)
     return ended
@@ -145,18 +133,27 @@ def cut_off(planner: Planner, progress: Progress | None) -> SearchEnd:
     return SearchEnd(last, INTERRUPTED, progress.walls, progress.kept)
 
 
-def _ended(planner: Planner, progress: Progress, grace: Deadline, *, lost: bool) -> SearchEnd:
-    """Judge the best walls of a search thoroughly, and add what finds a place on the best."""
+def _ended(
+    planner: Planner, progress: Progress, grace: Deadline, executor: Executor | None, *, lost: bool
+) -> SearchEnd:
+    """Judge the best walls of a search, repair the best, and add what finds a place on it."""
     kept = progress.kept
     sure, unsure = surest(planner, kept or [progress.best], grace)
     best = found = PackedWall.of(sure) if sure else progress.best
     try:
         if sure:
-            # A turn takes as long as a few walls.
-            turns = min(REPAIRS, progress.walls // 2)
-            best = PackedWall.of(repaired(planner, sure, grace, turns))
+            turns, workers = min(TURNS, progress.walls // 2), None if lost else executor
+            for turn, wall in enumerate(repairs(planner, sure, grace, turns, workers), 1):
+                best = PackedWall.of(wall)
+                planner.callbacks.on_walls(_incumbent(progress.walls, best, turn))
     except TimeIsUp:
         unsure = True
+    except BrokenProcessPool:
+        lost = True
+    except KeyboardInterrupt:
+        with suppress(KeyboardInterrupt), held():
+            ended = SearchEnd(as_found(planner, best)[0], INTERRUPTED, progress.walls, kept, lost)
+        return ended
     last, stopped, cut = with_the_rest(planner, best, grace)
     planner.solves += last.solves
     if best.groups != found.groups or len(last.build.actions) > len(best.groups):
@@ -183,17 +180,17 @@ def _built(planner: Planner, until: Deadline, told: Callable[[Progress | None], 
     return planner.stopped
 
 
-def _incumbent(progress: Progress) -> Incumbent:
-    best = progress.best
+def _incumbent(walls: int, best: PackedWall, turn: int = 0) -> Incumbent:
     figures = best.figures or WallFigures(0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     return Incumbent(
-        progress.walls,
+        walls,
         figures.stones,
         best.merit,
         figures.F_SF,
         figures.F_LR,
         figures.F_AV,
         figures.F_AH,
+        turn,
     )
 
 
@@ -221,56 +218,6 @@ def surest(
     except TimeIsUp:
         return best, True
     return best, False
-
-
-def repaired(
-    planner: Planner, best: FoundWall, until: Deadline = NEVER, turns: int = REPAIRS
-) -> FoundWall:
-    """Return a wall without what is weak in it, where that is better.
-
-    Weak are the stones that fall first in its rehearsals, and those that move when it fails.  Of
-    both the weakest one is taken out, or all are, and what they leave is built up again or stays
-    open; or one of the first that fall gets one more wedge.  What is better is rehearsed again
-    with other errors, for the best of many has luck with those that chose it; the best goes on.
-    """
-    yard = Yard.of(planner, until)
-    for turn in range(turns):
-        look = Rehearsals(yard, LOOK_RUNS, 2 + 2 * turn)
-        least = best.judged(yard, rehearsals=look).merit + WORTH
-        first = [stone for stone, _ in best.falls.first.most_common()] if best.falls else []
-        weak = [frozenset(some) for s in (first, best.movers) for some in (s[:1], s) if some]
-        walls, rng = [], np.random.default_rng([planner.seed, REPAIR_DRAWS, turn])
-        for chosen in dict.fromkeys(weak):
-            build, _, solves = without(best.build, chosen, yard)
-            walls += [FoundWall.measured(build, yard, solves)]
-            walls += [FoundWall.of(yard.built_up(build, rng), before=solves)]
-        for stone in first[:WEDGED]:
-            wedged = one_more_wedge(best.build, stone, yard)
-            walls += [FoundWall.measured(build, yard, solves) for build, solves in wedged]
-        judged = (wall.judged(yard, THOROUGH, least, look) for wall in walls)
-        found = [wall for wall in judged if wall.merit > least]
-        if not found:
-            break
-        again = Rehearsals(yard, LAST_RUNS, 3 + 2 * turn)
-        least = best.judged(yard, rehearsals=again).merit + WORTH
-        judged = (wall.judged(yard, None, least, again) for wall in found)
-        better = max(judged, key=lambda one: one.merit)
-        if better.merit <= least or not stays_at_every_step(better.build, until):
-            break
-        best = better
-    return best
-
-
-def stays_at_every_step(build: Build, until: Deadline = NEVER) -> bool:
-    """Return whether a wall on outlines stays as it is when all of it is let go after each step.
-
-    Forces that would hold it may exist that do not arise (DESIGN 4.8).  For the newest stone alone
-    that is asked whenever a stone is placed; for all, which takes longer, only here.
-    """
-    if build.wall.outlines is None:
-        return True
-    models = (action.model for action in build.actions)
-    return all(fall_of(m, assemble(m), ROUNDS, until.look) is None for m in models)
 
 
 def as_found(

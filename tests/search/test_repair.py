@@ -1,0 +1,88 @@
+"""Repairs of a wall: what falls or moves in it is laid elsewhere, wedged, or left open."""
+
+import math
+from dataclasses import replace
+
+import pytest
+
+from drystone import Planner, Site
+from drystone.planner.deadline import Deadline, TimeIsUp
+from drystone.search.goal import THOROUGH, FoundWall, Rehearsals
+from drystone.search.processes import processes
+from drystone.search.repair import AROUND, _changes, repairs
+from drystone.search.yard import Yard
+from tests.planner import scenes
+
+
+def test_stones_that_fall_in_rehearsals_are_taken_out_or_laid_elsewhere():
+    careless = scenes.greedy({"search": {"budget": 2}, "settle": {"trials": 0}})
+    site = Site.from_source(160, 100, 0.5)
+    planner = scenes.finish(Planner(scenes.ROUNDED, site, seed=0, settings=careless))
+    yard = Yard.of(planner)
+    wall = FoundWall.of(planner).judged(yard, THOROUGH)
+    assert wall.falls.first
+    (better,) = repairs(planner, wall, turns=1)
+    often = Rehearsals(yard, 20, 99)
+    share = often.falls(wall.build).share
+    assert often.falls(better.build).share < 0.7 * share
+    nothing = FoundWall.of(Planner(scenes.bricks(), Site(60, 20), settings=careless))
+    assert {one.build for one in repairs(planner, nothing)} == {nothing.build}
+
+
+def test_stones_that_move_when_the_wall_fails_are_taken_out_or_laid_elsewhere():
+    stones = scenes.blocks({1: (40, 12), 2: (40, 12), 3: (8, 24)})
+    goal = {"fallen": 0.0, "filling": 1.0}  # strength counts for more than a small stone
+    careless = {"settle": {"trials": 0}, "orientations": "sf"}
+    settings = scenes.greedy({"search": {"budget": 2}, "goal": goal, **careless})
+    planner = scenes.finish(Planner(stones, Site(42, 60), settings=settings))
+    wall = FoundWall.of(planner).judged(Yard.of(planner), THOROUGH)
+    assert wall.movers == (3,)  # the slender one on top
+    assert wall.figures.F_LR_coulomb == pytest.approx(8 / 24 / 0.58, abs=0.03)
+    (better,) = repairs(planner, wall, turns=1)
+    assert scenes.ids(better) == [1, 2]
+    assert better.figures.F_LR_coulomb == pytest.approx(1.0)
+
+
+@pytest.fixture(scope="module")
+def careless():
+    """A wall of round stones that were laid without trials."""
+    settings = scenes.greedy({"search": {"budget": 2}, "settle": {"trials": 0}})
+    planner = Planner(scenes.ROUNDED, Site.from_source(160, 100, 0.5), seed=0, settings=settings)
+    return scenes.finish(planner)
+
+
+def told(walls):
+    return [(wall.merit, scenes.ids(wall)) for wall in walls]
+
+
+def test_processes_find_the_repairs_that_one_alone_finds(careless):
+    wall = FoundWall.of(careless).judged(Yard.of(careless), THOROUGH)
+    alone = told(repairs(careless, wall, turns=1))
+    assert alone[-1][0] > wall.merit
+    with processes(2) as workers:
+        assert told(repairs(careless, wall, turns=1, executor=workers)) == alone
+
+
+def test_what_was_repaired_before_time_is_up_stays(careless):
+    wall, clock = FoundWall.of(careless).judged(Yard.of(careless), THOROUGH), scenes.Ticks()
+    whole = told(repairs(careless, wall, Deadline(math.inf, clock), turns=1))
+    late = repairs(careless, wall, scenes.after_looks(clock.count + 5))
+    assert told([next(late)]) == whole
+    with pytest.raises(TimeIsUp):
+        next(late)
+    with pytest.raises(TimeIsUp):
+        next(repairs(careless, wall, scenes.after_looks(0)))
+
+
+def test_other_stones_are_tried_after_a_turn_without_a_repair(careless):
+    wall = FoundWall.of(careless).judged(Yard.of(careless), THOROUGH)
+    first = scenes.ids(wall)[:6]
+    tried = [_changes(wall, first, misses) for misses in range(3)]
+    for misses, changes in enumerate(tried):
+        assert frozenset([first[misses]]) in {one.stones for one in changes if not one.wedged}
+        assert all(len(one.stones) == 1 for one in changes if one.wedged)
+        around = [one.stones for one in changes if len(one.stones) == AROUND + misses]
+        assert any(first[misses] in stones for stones in around)
+    assert [sum(one.wedged for one in changes) for changes in tried] == [4, 2, 0]
+    # Nothing falls or moves.
+    assert _changes(replace(wall, movers=()), [], 0) == []
