@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import tifffile
 from PIL import Image
+from rich.progress import Progress
 
 from drystone.cli import planning, progress
 from drystone.cli.planning import read_line
@@ -16,6 +17,7 @@ from drystone.io.plan_json import read_plan
 from drystone.io.wall_image import write_labels
 from drystone.model.plan import PlanMetrics
 from drystone.model.stone import Stone, StoneSet
+from drystone.planner.events import Incumbent
 from drystone.planner.profile import PARTS
 from drystone.search.plan_wall import plan_wall
 from tests.cli.conftest import EXACT, SIZE, UNTRIED, WALL, keys, listed
@@ -275,12 +277,20 @@ def test_the_bound_is_printed(wall, text, rubble, tmp_path, run):
     assert summary["F_SF"] <= summary["F_SF_bound"]
 
 
+@pytest.mark.parametrize(("turn", "made"), [(0, "32 walls"), (3, "repairs 3")])
+def test_the_bar_tells_of_walls_and_then_of_repairs(turn, made):
+    bar = Progress()
+    shown = progress._StepBar(bar, 5, 32, timed=False)
+    shown.on_walls(Incumbent(32, 5, 1.0, F_SF=0.9, F_LR=0.5, F_AV=1.0, F_AH=1.0, repairs=turn))
+    assert bar.tasks[-1].description == f"{made}; best: 5 stones, F_SF 0.900, F_LR 0.50"
+
+
 def test_a_terminal_sees_stones_and_walls(rubble, tmp_path, run, monkeypatch):
     plan = ("plan", rubble, "--overwrite", "-o", tmp_path / "out")
     monkeypatch.setenv("FORCE_COLOR", "1")  # the terminal that pytest does not have
     ran = run(*plan, *EXACT, *UNTRIED, "--budget", 2)
     assert "filling" in ran.err
-    assert "walls; best: " in ran.err
+    assert "; best: " in ran.err
     assert "filling 0" not in ran.out
     for option in ("--quiet", "--json"):
         assert run(*plan, *WALL, option).err == ""

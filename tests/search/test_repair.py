@@ -7,26 +7,35 @@ import pytest
 
 from drystone import Planner, Site
 from drystone.planner.deadline import Deadline, TimeIsUp
-from drystone.search.goal import THOROUGH, FoundWall, Rehearsals
+from drystone.search.goal import THOROUGH, FoundWall, Rehearsals, is_high
 from drystone.search.processes import processes
-from drystone.search.repair import AROUND, _changes, repairs
+from drystone.search.repair import AROUND, _better, _changes, repairs
 from drystone.search.yard import Yard
 from tests.planner import scenes
 
 
-def test_stones_that_fall_in_rehearsals_are_taken_out_or_laid_elsewhere():
-    careless = scenes.greedy({"search": {"budget": 2}, "settle": {"trials": 0}})
-    site = Site.from_source(160, 100, 0.5)
-    planner = scenes.finish(Planner(scenes.ROUNDED, site, seed=0, settings=careless))
-    yard = Yard.of(planner)
-    wall = FoundWall.of(planner).judged(yard, THOROUGH)
+@pytest.fixture(scope="module")
+def careless():
+    """One that has laid round stones without trials."""
+    settings = scenes.greedy({"search": {"budget": 2}, "settle": {"trials": 0}})
+    planner = Planner(scenes.ROUNDED, Site.from_source(160, 100, 0.5), seed=0, settings=settings)
+    return scenes.finish(planner)
+
+
+@pytest.fixture(scope="module")
+def wall(careless):
+    """What it has built."""
+    return FoundWall.of(careless).judged(Yard.of(careless), THOROUGH)
+
+
+def test_stones_that_fall_in_rehearsals_are_taken_out_or_laid_elsewhere(careless, wall):
     assert wall.falls.first
-    (better,) = repairs(planner, wall, turns=1)
-    often = Rehearsals(yard, 20, 99)
+    (better,) = repairs(careless, wall, turns=1)
+    often = Rehearsals(Yard.of(careless), 20, 99)
     share = often.falls(wall.build).share
     assert often.falls(better.build).share < 0.7 * share
-    nothing = FoundWall.of(Planner(scenes.bricks(), Site(60, 20), settings=careless))
-    assert {one.build for one in repairs(planner, nothing)} == {nothing.build}
+    nothing = FoundWall.of(Planner(scenes.bricks(), Site(60, 20), settings=careless.settings))
+    assert {one.build for one in repairs(careless, nothing)} == {nothing.build}
 
 
 def test_stones_that_move_when_the_wall_fails_are_taken_out_or_laid_elsewhere():
@@ -43,28 +52,19 @@ def test_stones_that_move_when_the_wall_fails_are_taken_out_or_laid_elsewhere():
     assert better.figures.F_LR_coulomb == pytest.approx(1.0)
 
 
-@pytest.fixture(scope="module")
-def careless():
-    """A wall of round stones that were laid without trials."""
-    settings = scenes.greedy({"search": {"budget": 2}, "settle": {"trials": 0}})
-    planner = Planner(scenes.ROUNDED, Site.from_source(160, 100, 0.5), seed=0, settings=settings)
-    return scenes.finish(planner)
-
-
 def told(walls):
     return [(wall.merit, scenes.ids(wall)) for wall in walls]
 
 
-def test_processes_find_the_repairs_that_one_alone_finds(careless):
-    wall = FoundWall.of(careless).judged(Yard.of(careless), THOROUGH)
+def test_processes_find_the_repairs_that_one_alone_finds(careless, wall):
     alone = told(repairs(careless, wall, turns=1))
     assert alone[-1][0] > wall.merit
     with processes(2) as workers:
         assert told(repairs(careless, wall, turns=1, executor=workers)) == alone
 
 
-def test_what_was_repaired_before_time_is_up_stays(careless):
-    wall, clock = FoundWall.of(careless).judged(Yard.of(careless), THOROUGH), scenes.Ticks()
+def test_what_was_repaired_before_time_is_up_stays(careless, wall):
+    clock = scenes.Ticks()
     whole = told(repairs(careless, wall, Deadline(math.inf, clock), turns=1))
     late = repairs(careless, wall, scenes.after_looks(clock.count + 5))
     assert told([next(late)]) == whole
@@ -74,8 +74,7 @@ def test_what_was_repaired_before_time_is_up_stays(careless):
         next(repairs(careless, wall, scenes.after_looks(0)))
 
 
-def test_other_stones_are_tried_after_a_turn_without_a_repair(careless):
-    wall = FoundWall.of(careless).judged(Yard.of(careless), THOROUGH)
+def test_other_stones_are_tried_after_a_turn_without_a_repair(wall):
     first = scenes.ids(wall)[:6]
     tried = [_changes(wall, first, misses) for misses in range(3)]
     for misses, changes in enumerate(tried):
@@ -86,3 +85,18 @@ def test_other_stones_are_tried_after_a_turn_without_a_repair(careless):
     assert [sum(one.wedged for one in changes) for changes in tried] == [4, 2, 0]
     # Nothing falls or moves.
     assert _changes(replace(wall, movers=()), [], 0) == []
+
+
+def test_a_repair_that_makes_a_complete_wall_too_low_must_gain_more(careless, wall):
+    yard, rehearsals = Yard.of(careless), Rehearsals(Yard.of(careless), 4)
+    low = FoundWall.measured(careless.build.states()[3], yard)
+    assert is_high(wall.build.wall)
+    assert not is_high(low.build.wall)
+    merit = low.judged(yard, THOROUGH, rehearsals=rehearsals).merit
+
+    def taken(best, gain):
+        before = replace(best, merit=merit - gain)
+        return len(_better(before, [low], THOROUGH, rehearsals, yard))
+
+    assert [taken(wall, gain) for gain in (0.05, 0.3, 0.6)] == [0, 0, 1]
+    assert [taken(low, gain) for gain in (0.05, 0.3, 0.6)] == [0, 1, 1]

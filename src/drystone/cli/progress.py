@@ -40,9 +40,9 @@ class _StepBar(Callbacks):
             self._walls = self._bar.add_task("walls", total=self._total)
         # With the bar and the time that is left it fits into a line of 80 characters.
         turn = incumbent.repairs
+        made = f"repairs {turn}" if turn else f"{incumbent.walls} walls"
         text = (
-            f"{f'repairs {turn}' if turn else f'{incumbent.walls} walls'}; "
-            f"best: {incumbent.stones} stones, "
+            f"{made}; best: {incumbent.stones} stones, "
             f"F_SF {incumbent.F_SF:.3f}, F_LR {incumbent.F_LR:.2f}"
         )
         spent = time.monotonic() - self._started

@@ -26,14 +26,12 @@ from drystone.settle.settings import SettleSettings
 MARGIN = 1.25
 """A place is tried with a hand's errors times this, so that it is sure with some to spare."""
 
-FALL, FALL_OF_MANY = 14.0, 4.0
+FALL, FALL_OF_MANY, MANY = 14.0, 4.0, 80
 """A stone that would fall in all trials is laid when it is larger than so many mean stones.
 
 A wall that is not whole counts as one without :data:`drystone.search.goal.STOPPED` more stones.
 With more than :data:`MANY` stones it hardly ever stays whole, and is to be finished.
 """
-
-MANY = 80
 
 KNOWN_BYTES = 1 << 27
 """Walls of trials that are remembered at most, about: those of fifty to a hundred steps."""

@@ -7,7 +7,6 @@ the clock says.  The clock decides only how large the budget is.  So a search th
 on from where it stood (:mod:`drystone.search.state`) to the same walls.
 """
 
-import pickle
 from collections.abc import Generator, Iterator, Sequence
 from concurrent.futures import Executor
 from contextlib import suppress
@@ -56,7 +55,7 @@ def searching(
     then is none.  The walls do not depend on the processes that build them.
     """
     settings = yard.settings
-    job = Job(pickle.dumps((yard.workshop.stones, yard.workshop.site, settings)), seed, yard.until)
+    job = Job.of(yard, seed)
     if isinstance(start, SearchState):
         at = start
         reached = at.chains.reached if at.chains else _together(at.found)

@@ -38,6 +38,13 @@ class Job:
     seed: int
     until: Deadline
 
+    @classmethod
+    def of(cls, yard: Yard, seed: int) -> "Job":
+        """Return what tasks need to build with what walls are built with here."""
+        workshop = yard.workshop
+        tools = pickle.dumps((workshop.stones, workshop.site, yard.settings))
+        return cls(tools, seed, yard.until)
+
     @property
     def yard(self) -> Yard:
         """What walls are built with here."""

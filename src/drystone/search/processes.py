@@ -22,13 +22,11 @@ by .3 GB for one that leaks, warns, and begins with another one that remembers n
 of IR on pixels (.46 GB, and no more after 300 s).
 """
 
-
 RARELY = 100_000
 """Walls, models and plans hold no cycles: of so many new objects the collector finds next to none.
 
 With the usual 700 it takes a twelfth of the time of a search.
 """
-
 
 Result = TypeVar("Result")
 

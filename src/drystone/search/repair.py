@@ -76,8 +76,7 @@ def repairs(
     best goes on.  TimeIsUp: before a turn was at its end.
     """
     yard = Yard.of(planner, until)
-    tools = pickle.dumps((yard.workshop.stones, yard.workshop.site, yard.settings))
-    job = Job(tools, planner.seed, until)
+    job = Job.of(yard, planner.seed)
     first, misses = _falls(best), 0
     try:
         for turn in range(turns):
@@ -114,9 +113,8 @@ def _changes(wall: FoundWall, first: Sequence[int], misses: int) -> list[Change]
     weak += [list(around(wall.build, one, AROUND + misses)) for one in first[misses:][:1]]
     sets = dict.fromkeys(frozenset(some) for some in weak if some)
     wedged = first[WEDGED * misses :][:WEDGED]
-    return [Change(some, wedged=False) for some in sets] + [
-        Change(frozenset([stone]), wedged=True) for stone in wedged
-    ]
+    changes = [Change(some, wedged=False) for some in sets]
+    return changes + [Change(frozenset([stone]), wedged=True) for stone in wedged]
 
 
 def changed(job: Job, packed: bytes, turn: int, number: int, change: Change) -> list[Repair] | None:
