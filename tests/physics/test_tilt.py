@@ -4,10 +4,13 @@ On a shaken table a rigid block slides when the ground accelerates by more than 
 b/h g on (Housner 1963).  The longer the period, the closer to these values it moves by a limit.
 """
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from drystone.errors import InputError
+from drystone.physics.building import ROUNDED
 from drystone.physics.scatter import TiltResult, Variation, compare_with_tilt, tilt_test
 from drystone.physics.scene import EngineScene, EngineSettings
 from drystone.physics.shake import ShakeSettings, shake_once, sinusoid
@@ -71,6 +74,17 @@ def test_what_does_not_stand_or_never_falls_has_no_alpha():
     flat, settings = scene_of((0, 0, 2, 1), mu=0.58), TiltSettings(greatest=0.3)
     trial = tilt_once(flat, "right", None, settings)
     assert (trial.alpha, trial.fell_at_rest) == (None, False)
+
+
+def test_what_rocks_comes_to_rest():
+    """A half disc on its round side follows the tilt, far below .42: there it rolls away."""
+    angles = np.linspace(np.pi, 2.0 * np.pi, 33)
+    half = EngineScene({1: np.column_stack([np.cos(angles), 1.0 + np.sin(angles)])}, mu=0.58)
+    steps = TiltSettings(coarse=0.13, fine=0.02)
+    for speed_left, least, most in ((0.3, 0.2, 0.42), (0.5, 0.2, 0.42), (1.0, 0.0, 0.05)):
+        # Without losses it rocks for ever, which counts as a fall.
+        engine = replace(ROUNDED, speed_left=speed_left)
+        assert least < tilt_once(half, "right", engine, steps).alpha < most
 
 
 def test_same_input_same_result():

@@ -58,3 +58,6 @@ class EngineSettings:
     slop: float = 1e-3  # depth to which blocks may overlap, so that contacts do not flicker
     overlap_left: float = 1.8e-3  # share of deeper overlap that is left after a unit of time
     corner_radius: float = 0.0  # corners of blocks are rounded by this, faces stay where they are
+    # Share of the speeds that is left after a unit of time.  Stones that rock lose theirs as they
+    # roll and strike; those of the engine roll for nothing, and would rock for ever.
+    speed_left: float = 0.5

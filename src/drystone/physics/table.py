@@ -33,6 +33,7 @@ class TiltingTable:
         self._space.iterations = settings.iterations
         self._space.collision_slop = settings.slop
         self._space.collision_bias = settings.overlap_left
+        self._space.damping = settings.speed_left
         self._reaches: Floats = np.zeros(0)
         for block in scene.shapes if placed is None else placed:
             self.place(scene, block)

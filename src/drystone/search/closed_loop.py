@@ -22,7 +22,7 @@ from drystone.kernels.as_built import Built, BuiltWall
 from drystone.kernels.profiles import HeightProfile, bare, hanging, raised
 from drystone.model.builder import BuilderErrors, as_planned, stratified
 from drystone.model.outlines import Outlined
-from drystone.physics.building import build_up, tilt_of
+from drystone.physics.building import ROUNDED, build_up, tilt_of
 from drystone.physics.scatter import Variation
 from drystone.physics.tilt import TiltSettings
 from drystone.planner.vary import TRIAL_DRAWS
@@ -62,9 +62,7 @@ OVER_TOP = 0.25
 """A stone of the heap may stand out over the plan by so much, mean sizes."""
 
 PATIENT = replace(IN_ENGINE, moved_share=FALLEN_SHARE, turned_deg=FALLEN_DEG, longest_rest=20.0)
-TILT = Variation(
-    "as built", IN_ENGINE.engine, TiltSettings(coarse=0.13, fine=0.02, longest_hold=20)
-)
+TILT = Variation("as built", ROUNDED, TiltSettings(coarse=0.13, fine=0.02, longest_hold=20))
 """How a wall as it was built is let go and tilted: stones that rest at a few points go on to roll
 for a while, and errors of percents leave no digits to look for."""
 

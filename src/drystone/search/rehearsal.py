@@ -19,7 +19,6 @@ from drystone.model.builder import BuilderErrors, as_planned, put_down_with, str
 from drystone.model.outlines import Outlined
 from drystone.model.wall import Wall, outlined
 from drystone.physics.building import BuildSettings, build_up, tilt_of
-from drystone.physics.scene import EngineSettings
 from drystone.settle.putting import astray, bare_wall, fallen_share, lost
 from drystone.settle.settings import SettleSettings
 
@@ -33,13 +32,12 @@ Put = list[list[tuple[int, Built]]]
 """The same blocks as they are and where they are put in a run, the stone of each first."""
 
 IN_ENGINE = BuildSettings(
-    engine=EngineSettings(iterations=30, slop=3e-3, corner_radius=3e-3),
     moved_share=math.inf,  # where a stone ends is asked, not what it did on the way
     turned_deg=math.inf,
     resting_time=0.5,
     longest_rest=3.0,
 )
-"""How the engine is asked: where stones go astray by percents, no digits are needed."""
+"""How the engine is asked: whether stones go astray by percents, sooner than to the last digit."""
 
 
 @dataclass(frozen=True)
