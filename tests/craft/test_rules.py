@@ -99,7 +99,7 @@ def test_open_joints_of_a_tracing_change_nothing_but_stones_far_apart_have_none(
             one, other = find(rule, tight), find(rule, drawn)
             assert one.number == other.number
             assert [case.stones for case in one.cases] == [case.stones for case in other.cases]
-    wall = Masonry(open_joints(stack_bond(), 0.4))
+    wall = Masonry(open_joints(stack_bond(), 0.9))
     assert find("running_joints", wall).verdict == "not judged"
     assert find("one_over_two", wall).cases[0].words == "rests on no stone"
     # A wedge is part of the bed.
@@ -109,6 +109,13 @@ def test_open_joints_of_a_tracing_change_nothing_but_stones_far_apart_have_none(
     wall = Masonry(loops | wedges, wedge_ids={8, 9})
     assert [one[0] for one in wall.supports[3]] == [1, 2]
     assert set(wall.stones) == {1, 2, 3}
+
+
+def test_a_slot_as_wide_as_a_small_stone_is_a_joint_through_all_its_courses():
+    for gap, number in ((0.3, 3.0), (0.6, 3.0), (0.9, None)):
+        sides = {2 * k + 1: box(0, k, 2, 1) for k in range(3)}
+        sides |= {2 * k + 2: box(2 + gap, k, 2, 1) for k in range(3)}
+        assert find("running_joints", Masonry(sides)).number == number
 
 
 @settings(max_examples=12)

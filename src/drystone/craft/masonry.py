@@ -168,19 +168,20 @@ class Masonry:
                 )
         return scan(self.loops, axis, self.settings.sample * self.mean_height)
 
-    def _joints(self, scanned: Scan, axis: int) -> tuple[Joint, ...]:
-        widest = self.settings.joint * self.mean_height
-        return joints(scanned, axis, widest, frozenset(self.wedge_ids))
+    def _joints(self, axis: int, widest: float) -> tuple[Joint, ...]:
+        wedges = frozenset(self.wedge_ids)
+        scanned = (self.rows, self.columns)[axis]
+        return joints(scanned, axis, widest * self.mean_height, wedges)
 
     @cached_property
     def heads(self) -> tuple[Joint, ...]:
         """Head joints: between a stone and the one to the right of it."""
-        return self._joints(self.rows, 0)
+        return self._joints(0, self.settings.slot)
 
     @cached_property
     def beds(self) -> tuple[Joint, ...]:
         """Bed joints: between a stone and the one above it."""
-        return self._joints(self.columns, 1)
+        return self._joints(1, self.settings.joint)
 
     @cached_property
     def chains(self) -> tuple[Chain, ...]:

@@ -10,7 +10,10 @@ class CraftSettings:
     All of these are definitions of our own; docs/craft.md says why.
     """
 
-    joint: float = 0.3  # widest gap that is a joint between two neighbours; what is wider is a hole
+    joint: float = 0.3  # widest gap that is a bed joint; what is wider is a hole
+    # widest gap between neighbours that is a head joint: as wide as a small stone, which parts a
+    # wall all the more
+    slot: float = 0.8
     sample: float = 1.0 / 24.0  # distance of the lines along which the wall is looked at
     # sideways step up to which a joint goes on as the same joint in the next course, and height
     # within which four corners meet at one point
