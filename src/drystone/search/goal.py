@@ -162,7 +162,8 @@ class RehearsalFalls(NamedTuple):
     # In the mean, over all its stones.  A run that is not whole counts as `STOPPED` more stones.
     # One that is counts as a part of these, the more the nearer a stone came to falling.
     share: float
-    first: Counter[int]  # in how many runs falls begin with which stones
+    first: Counter[int]  # in how many runs which stone falls first, in the order of placement
+    begins: Counter[int]  # in how many falls begin when which stone is laid
 
 
 @dataclass(frozen=True)
@@ -220,6 +221,7 @@ class FoundWall:
         The wall has no merit as soon as that cannot be more than `least`.
         """
         figures, model, goal = self.figures, self.build.model, yard.settings.goal
+        possible = possible_filling(yard.workshop)
         again = flow is not None or rehearsals is not None
         # In other rehearsals less may fall, or nothing.
         most = self.merit + (goal.fallen * figures.fallen if figures and again else 0.0)
@@ -238,17 +240,22 @@ class FoundWall:
                 return replace(self, merit=-math.inf)
             figures = replace(figures, fallen=falls.share)
         carried, movers = figures.F_LR, self.movers
+        # A thorough search begins as the quick one, which may find a load that is low enough.
+        searches: list[NonassociativeSettings] = list(dict.fromkeys((QUICK, flow or QUICK)))
         if known is not None and flow is None:
-            carried = known
-        else:
-            found = nonassociative_resistance(model, settings=flow or QUICK, look=yard.until.look)
+            carried, searches = known, []
+        for settings in searches:
+            found = nonassociative_resistance(model, settings=settings, look=yard.until.look)
             for end in (found.left, found.right):
                 alpha = 0.0 if end.status is LimitStatus.UNSTABLE else end.alpha
                 if alpha is not None and alpha / found.mu <= carried:
                     carried = alpha / found.mu
                     movers = _movers(self.build, end.mechanism)
+            figures = replace(figures, F_LR_coulomb=carried)
+            if merit_of(figures, possible, goal) <= least:
+                return replace(self, merit=-math.inf)
         figures = replace(figures, F_LR_coulomb=carried)
-        merit = merit_of(figures, possible_filling(yard.workshop), goal)
+        merit = merit_of(figures, possible, goal)
         return replace(self, figures=figures, merit=merit, falls=falls, movers=movers)
 
 
@@ -310,14 +317,14 @@ class Rehearsals:
         """
         blocks, groups = groups_of(build.wall), build.wall.groups
         if not blocks:
-            return RehearsalFalls(0.0, Counter())
+            return RehearsalFalls(0.0, Counter(), Counter())
         settings = self._yard.settings
         errors = self._errors or BuilderErrors.of_precision(HAND, mean_size(blocks))
         pairs = zip(groups, self._first, strict=False)
         same = sum(1 for _ in takewhile(lambda two: two[0] is two[1], pairs))
         built = min(same, *(len(states) - 1 for states in self._states[: self._runs]))
         put = [self._put(errors, one) for one in blocks[built:]]
-        first, held, lost = Counter[int](), 0, [0.0] * self._runs
+        first, begins, held, lost = Counter[int](), Counter[int](), 0, [0.0] * self._runs
         rest = math.fsum(self._lost)
         for k in sorted(range(self._runs), key=self._lost.__getitem__, reverse=True):
             least = math.fsum([*lost, rest if self._lost[k] < STOPPED else 0.0])
@@ -327,8 +334,9 @@ class Rehearsals:
             states = self._states[k][: same + 1]
             pieces = [*([] for _ in range(built)), *(runs[k] for runs in put)]
             run = put_up(blocks, pieces, settings.mu, settings.settle, states)
-            if run.first_fall is not None:
+            if run.first_fall is not None and run.begins is not None:
                 first[run.first_fall] += 1
+                begins[run.begins] += 1
             lost[k] = sum(end.fallen for end in run.stones)
             lost[k] += STOPPED * max(end.nearness for end in run.stones) ** NEARLY
             rest -= self._lost[k]
@@ -345,7 +353,7 @@ class Rehearsals:
             return None
         if not self._first:
             self._first, self._errors, self._lost = groups, errors, lost[: self._runs]
-        return RehearsalFalls(share, first)
+        return RehearsalFalls(share, first, begins)
 
     def _put(
         self, errors: BuilderErrors, group: Sequence[Outlined]

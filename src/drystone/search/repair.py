@@ -6,7 +6,7 @@ Repairs are chosen by other rehearsals in every turn, and those asked for by oth
 
 import pickle
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from concurrent.futures import Executor
 from dataclasses import replace
 from functools import lru_cache
@@ -22,6 +22,7 @@ from drystone.search.goal import (
     LAST_RUNS,
     THOROUGH,
     FoundWall,
+    RehearsalFalls,
     Rehearsals,
     is_high,
     stays_at_every_step,
@@ -69,21 +70,22 @@ def repairs(
 ) -> Iterator[FoundWall]:
     """Yield after every turn a wall without what is weak in it, where that is better.
 
-    Weak are the stones that fall first in its rehearsals, and those that move when it fails.  Of
-    both the weakest one is taken out, or all are, or some around it; what they leave is built up
-    again or stays open.  Or one of the first that fall gets one more wedge.  What is better is
-    rehearsed again with other errors, for the best of many has luck with those that chose it; the
-    best goes on.  TimeIsUp: before a turn was at its end.
+    Weak are the stones that fall first in its rehearsals, that are laid when falls begin, and that
+    move when it fails.  The weakest one is taken out, or all are, or some around it; what they
+    leave is built up again or stays open.  Or one of the first that fall gets one more wedge.
+    What is better is rehearsed again with other errors, for the best of many has luck with those
+    that chose it; the best goes on.  TimeIsUp: before a turn was at its end.
     """
     yard = Yard.of(planner, until)
     job = Job.of(yard, planner.seed)
-    first, misses = _falls(best), 0
+    (first, begins), misses = _weak(best), 0
     try:
         for turn in range(turns):
             now = best.judged(yard, rehearsals=Rehearsals(yard, LOOK_RUNS, 2 + 2 * turn))
-            first += _falls(now)
+            more, later = _weak(now)
+            first, begins = first + more, begins + later
             asked = job, pickle.dumps(PackedWall.of(best)), turn
-            changes = _changes(best, [stone for stone, _ in first.most_common()], misses)
+            changes = _changes(best, first, begins, misses)
             tasks = [(*asked, number, change) for number, change in enumerate(changes)]
             found: dict[object, Repair] = {}
             for walls in mapped(executor, changed, tasks):
@@ -92,7 +94,7 @@ def repairs(
                 found |= {one.groups: (one, movers) for one, movers in walls}
             better = _surely_better(best, list(found.values()), yard, 3 + 2 * turn)
             if better is not None:
-                best, first, misses = better, _falls(better), -1
+                best, (first, begins), misses = better, _weak(better), -1
             yield best
             misses += 1
             if misses == MISSES:
@@ -101,18 +103,23 @@ def repairs(
         _begun.cache_clear()
 
 
-def _falls(wall: FoundWall) -> Counter[int]:
-    return Counter(wall.falls.first if wall.falls else ())
+def _weak(wall: FoundWall) -> tuple[Counter[int], Counter[int]]:
+    """Count which stones fall first in rehearsals, and which are laid when falls begin."""
+    falls = wall.falls or RehearsalFalls(0.0, Counter(), Counter())
+    return falls.first, falls.begins
 
 
-def _changes(wall: FoundWall, first: Sequence[int], misses: int) -> list[Change]:
+def _changes(
+    wall: FoundWall, first: Counter[int], begins: Counter[int], misses: int
+) -> list[Change]:
     """List what is tried with a wall: after turns without a repair, other stones."""
-    weak = [first[misses:][:1], wall.movers[misses:][:1]]
+    fall, laid = ([stone for stone, _ in one.most_common()] for one in (first, begins))
+    weak: list[Collection[int]] = [one[misses:][:1] for one in (fall, laid, wall.movers)]
     if not misses:
-        weak += [first, wall.movers]
-    weak += [list(around(wall.build, one, AROUND + misses)) for one in first[misses:][:1]]
+        weak += [fall, wall.movers]
+    weak += [around(wall.build, one, AROUND + misses) for one in fall[misses:][:1]]
     sets = dict.fromkeys(frozenset(some) for some in weak if some)
-    wedged = first[WEDGED * misses :][:WEDGED]
+    wedged = fall[WEDGED * misses :][:WEDGED]
     changes = [Change(some, wedged=False) for some in sets]
     return changes + [Change(frozenset([stone]), wedged=True) for stone in wedged]
 
