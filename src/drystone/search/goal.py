@@ -38,8 +38,11 @@ from drystone.statics.result import LimitStatus, Mechanism
 MISSING = 10.0
 """Units of merit that a pinned stone counts which is not in the wall."""
 
-SCANNED = CraftSettings(sample=0.07)
-"""Bond is looked at along fewer lines than `craft` does, for every wall of a search."""
+SCANNED = CraftSettings(sample=0.07, slot=0.3)
+"""Bond is looked at along fewer lines than `craft` does, for every wall of a search.
+
+Slots count only there: merit that counts them takes walls of rubble that fall more often.
+"""
 
 QUICK = NonassociativeSettings(starts=STARTS[:1], random_starts=0, paths=(), let_go=False)
 """One start of twelve finds the least load without dilatancy of most walls."""
