@@ -186,6 +186,13 @@ def test_only_what_is_watched_counts():
     assert flat >= 0.5 - settings.fine > all_of_them
 
 
+def test_what_is_shaken_keeps_its_speed():
+    """However much of it is left to blocks that come to rest."""
+    scene, settings = scene_of((0, 0, 0.5, 3), mu=0.5), ShakeSettings(period=8.0, cycles=1)
+    found = {shake_once(scene, EngineSettings(speed_left=s), settings) for s in (0.1, 0.5, 1.0)}
+    assert len(found) == 1
+
+
 def test_the_ground_comes_back_to_rest():
     """Whole cycles: speed sums up to nothing, the peak is the amplitude."""
     signal = sinusoid(0.4, ShakeSettings(period=7.0, cycles=2), 0.01)

@@ -51,7 +51,7 @@ def shake_once(
     for its width b and height h.  By how much it must for a movement of the limit depends on the
     period: the shorter, the more.  Only the blocks that are watched count; all unless given.
     """
-    settings, engine = settings or ShakeSettings(), engine or EngineSettings(speed_left=1.0)
+    settings, engine = settings or ShakeSettings(), engine or EngineSettings()
     table = TiltingTable(scene, engine)
     if not hold(table, 0.0, table.poses(), settings.level):
         return None

@@ -102,11 +102,13 @@ class TiltingTable:
     def ride(self, ground: Iterable[float]) -> None:
         """Let a time step pass for each horizontal acceleration of the table, +x, in g.
 
-        Seen from the table, every block is pulled the other way.
+        Seen from the table, every block is pulled the other way, and keeps all its speed.
         """
+        self._space.damping = 1.0
         for acceleration in ground:
             self._space.gravity = (-acceleration, -1.0)
             self._space.step(self._settings.time_step)
+        self._space.damping = self._settings.speed_left
 
     def copy(self) -> Self:
         """Return the same state, which goes its own way."""

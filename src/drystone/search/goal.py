@@ -41,7 +41,7 @@ MISSING = 10.0
 SCANNED = CraftSettings(sample=0.07, slot=0.3)
 """Bond is looked at along fewer lines than `craft` does, for every wall of a search.
 
-Slots count only there: merit that counts them takes walls of rubble that fall more often.
+A slot is no joint here: merit that counts slots takes walls of rubble that fall more often.
 """
 
 QUICK = NonassociativeSettings(starts=STARTS[:1], random_starts=0, paths=(), let_go=False)
