@@ -4,6 +4,8 @@ from itertools import combinations
 
 import numpy as np
 import pytest
+from skimage.color import xyz2lab
+from skimage.color.colorconv import xyz_from_rgb
 
 from drystone.drawing import palette
 
@@ -17,18 +19,13 @@ VISION = {
     "tritan": np.array([[1.255528, -0.076749, -0.178779], [-0.078411, 0.930809, 0.147602],
                         [0.004733, 0.691367, 0.303900]]),
 }  # fmt: skip
-XYZ = np.array([[0.4124564, 0.3575761, 0.1804375], [0.2126729, 0.7151522, 0.0721750],
-                [0.0193339, 0.1191920, 0.9503041]])  # fmt: skip
 
 
 def _lab(colour, vision):
     part = np.array(palette.rgb(colour))
     linear = np.where(part <= 0.04045, part / 12.92, ((part + 0.055) / 1.055) ** 2.4)
     seen = np.clip(VISION[vision] @ linear, 0, 1)
-    ratio = XYZ @ seen / XYZ.sum(axis=1)
-    root = np.where(ratio > 216 / 24389, np.cbrt(ratio), (24389 / 27 * ratio + 16) / 116)
-    x, y, z = root
-    return np.array([116 * y - 16, 500 * (x - y), 200 * (y - z)])
+    return xyz2lab(xyz_from_rgb @ seen)
 
 
 @pytest.mark.parametrize("vision", VISION)

@@ -3,12 +3,6 @@
 import numpy as np
 import shapely
 
-from drystone.kernels.polygons import area_and_centroid
-from drystone.statics.model import GROUND, Block, Interface, RigidBlockModel
-
-FAR = 1e4
-GROUND_POLYGON = np.array([[-FAR, -1.0], [FAR, -1.0], [FAR, 0.0], [-FAR, 0.0]])
-
 
 def edges(corners):
     """Both ends of every edge."""
@@ -56,18 +50,3 @@ def is_inside(point, edge):
     step = edge[1] - edge[0]
     share = float((point - edge[0]) @ step / (step @ step))
     return 1e-6 < share < 1 - 1e-6
-
-
-def model(polygons, mu, tolerance, step):
-    """A wall of blocks 1, 2, ... with a contact at every sample that is near another block."""
-    blocks, interfaces = [], []
-    for number, corners in enumerate(polygons, start=1):
-        area, x, y = area_and_centroid(corners)
-        blocks.append(Block(number, area, (x, y)))
-        around = [(GROUND, GROUND_POLYGON), *enumerate(polygons[: number - 1], start=1)]
-        for other, outline in around:
-            interfaces += [
-                Interface(number, other, point[None], (float(normal[0]), float(normal[1])))
-                for point, normal in touching(corners, outline, tolerance, step)
-            ]
-    return RigidBlockModel(tuple(blocks), tuple(interfaces), mu)
