@@ -108,13 +108,6 @@ def test_measure_can_follow_its_own_cure(tmp_path, run):
         assert run(command, path, "--background", "255", "--json").json()[counted] == 2
 
 
-def test_a_wall_that_hangs_from_the_top_of_its_picture_is_put_on_the_ground_aloud(tmp_path, run):
-    path = tmp_path / "wall.png"
-    write_labels(np.repeat(np.uint32([[1], [2], [0]]), 20, axis=0).repeat(20, axis=1), path)
-    for command in ("analyse", "measure", "craft"):
-        assert "W301 20 empty rows below the stones" in run(command, path).err
-
-
 @pytest.mark.parametrize("command", ["analyse", "measure", "craft"])
 def test_what_was_done_to_a_picture_is_said_once(command, tmp_path, run):
     mask, path = np.zeros((40, 60), np.uint16), tmp_path / "mask.png"

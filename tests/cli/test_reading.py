@@ -133,13 +133,6 @@ def test_stones_are_converted_with_their_ids_and_scale(tmp_path, run):
     for name in ("stones", "total_area_px", "width_px", "height_px", "clusters", "px_per_m"):
         assert again[name] == first[name]
     assert "m high" in run("analyse", to, "--close-gaps", "1", "--associative-only").out
-    # What has no scale gets none.
-    bare = tmp_path / "bare.png"
-    first = run("stones", drawn("labelme", tmp_path), "--labels", bare, "--json").json()
-    again = run("stones", bare, "--json").json()
-    for name in ("stones", "total_area_px", "width_px", "height_px", "clusters", "px_per_m"):
-        assert again[name] == first[name]
-    assert again["px_per_m"] is None
 
 
 def test_what_cannot_be_converted_is_refused_before_anything_is_written(tmp_path, run):
