@@ -150,22 +150,6 @@ def test_bodies_without_names(tmp_path, kind, options):
     assert len(read_stones(unnamed, settings=settings)) == len(APART)  # by the content alone
 
 
-def test_obj_faces_may_have_many_corners_and_count_from_the_end(tmp_path):
-    """An L, as one face of six corners, and a box of quadrilaterals."""
-    text = """# a comment
-o wall_1
-v 0 0 0\nv 4 0 0\nv 4 0 1\nv 1 0 1\nv 1 0 3\nv 0 0 3
-f 1/1/1 2/2/1 3/3/1 4//1 5 6
-g part
-o wall_2
-v 6 0 0\nv 8 0 0\nv 8 0 2\nv 6 0 2
-f -4 -3 -2 -1
-"""
-    stones = read_stones(saved(tmp_path, text, "s.obj"), settings=ReadSettings(px_per_m=50, up="z"))
-    assert [stone.area_px for stone in stones] == [6 * 2500, 4 * 2500]
-    assert [stone.name for stone in stones] == ["wall_1", "wall_2"]
-
-
 def boxes(*names):
     """An OBJ of squares side by side, each after lines of its own."""
     lines = []

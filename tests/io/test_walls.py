@@ -165,13 +165,6 @@ def test_outlines_are_blocks_that_stand_on_their_lowest_point(form, tmp_path):
     assert labels[-1].any()
 
 
-def test_options_of_reading_leave_out_blocks(tmp_path):
-    path = drawn("labelme", tmp_path)
-    assert list(read_wall(path, ReadSettings(skip=(8,))).outlines) == [3, 5]
-    with pytest.raises(DrystoneError, match="background has no meaning"):
-        read_wall(path, ReadSettings(background=255))
-
-
 def with_line(left, right, low, high, folder):
     """The blocks, and a ninth that is a box."""
     line = [(left, low), (right, low), (right, high), (left, high)]
