@@ -139,7 +139,7 @@ def posed_on_walls(draw):
     return wall, posed, row, col
 
 
-def _picture(rows):
+def picture(*rows):
     """Rows from the top as a label image."""
     return np.array(rows, np.uint32)
 
@@ -156,7 +156,7 @@ def brick_labels(draw):
             row[left:right] = [brick] * (right - left)
             left = right + draw(st.sampled_from([0, 0, 0, 1, 2]))
         rows = [row] * draw(st.integers(1, 4)) + rows
-    return _picture(rows)
+    return picture(*rows)
 
 
 @st.composite
@@ -169,7 +169,7 @@ def stacked_labels(draw):
         rows = [row] * draw(st.integers(1, 5)) + rows
         left += draw(st.integers(-((width + 1) // 2), (width + 1) // 2))
         left, width = max(0, min(left, 60)), draw(st.integers(1, 8))
-    return _picture(rows)
+    return picture(*rows)
 
 
 @st.composite

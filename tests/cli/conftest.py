@@ -80,8 +80,6 @@ def _coarse():
 
 @pytest.fixture
 def run(capsys):
-    """Call ``drystone`` with some arguments."""
-
     def call(*arguments):
         capsys.readouterr()
         try:
@@ -103,7 +101,6 @@ def masks_in(folder):
 
 
 def rewrite(path, tamper):
-    """Change what a JSON file holds."""
     content = json.loads(path.read_text(encoding="utf-8"))
     tamper(content)
     path.write_text(json.dumps(content), encoding="utf-8")
@@ -136,7 +133,6 @@ WALL = ("--wall", SIZE, "--scale", "1", "--method", "paper")
 
 
 def plan_into(tmp_path_factory, stones, *wall):
-    """Plan a wall, and return its folder."""
     folder = tmp_path_factory.mktemp("plans") / "plan"
     with coarse():
         assert main(["plan", str(stones), *wall, "-o", str(folder), "--seed", "1"]) in (0, 4)

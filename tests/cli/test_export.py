@@ -21,7 +21,6 @@ QUICK = ("poses", "compas", "moveit", "urdf", "obj", "glb", "stl", "csv", "geojs
 
 @pytest.fixture
 def plan(tmp_path):
-    """The plan.json of a plan in px."""
     ds.write_plan_folder(planned(), tmp_path)
     return tmp_path / "plan.json"
 

@@ -23,8 +23,6 @@ from tests.statics.walls import stacked
 
 
 def failing(monkeypatch, error, module=command):
-    """Have a command raise an error."""
-
     def fail(_):
         raise error
 
@@ -174,7 +172,6 @@ def test_all_commands_are_listed_by_tasks_on_one_screen():
 
 
 def listed(*command):
-    """Options that the help of a command lists."""
     parser = build_parser(command)
     (commands,) = (one for one in parser._actions if isinstance(one.choices, dict))
     actions = commands.choices[command[0]]._actions

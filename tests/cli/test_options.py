@@ -44,8 +44,6 @@ def test_an_option_is_a_setting():
 
 @pytest.fixture
 def toml(tmp_path):
-    """Write a file of settings."""
-
     def written(text):
         # A byte order mark is no fault.
         (tmp_path / "mine.toml").write_text(text, encoding="utf-8-sig")

@@ -49,7 +49,6 @@ def assembly(name, px_per_m=PX_PER_M):
 
 @cache
 def source_stones():
-    """Return the stones of all plans."""
     rubble = RubbleSettings(count=9, width_px=110.0, height_px=40.0, courses=2, tilt_deg=14.0)
     return rubble_stones(rubble, np.random.default_rng(4))
 

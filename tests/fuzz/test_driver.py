@@ -66,7 +66,6 @@ def test_planted_defects_are_found(found, name):
 
 
 def files_in(folder):
-    """Contents by name of all files in a folder."""
     files = [path for path in folder.rglob("*") if path.is_file()]
     return {path.relative_to(folder): path.read_bytes() for path in files}
 

@@ -55,12 +55,10 @@ def grown(labels, candidates=1, at_once=1):
 
 
 def with_columns(added, more):
-    """The same with more columns."""
     return replace(added, cones=Added(added.weights, more, NOTHING).joined(added.cones))
 
 
 def some_columns(some, places):
-    """Some of the columns."""
     entries = np.ascontiguousarray(some.entries[:, places])
     return Cones(some.first[places], some.second[places], entries)
 

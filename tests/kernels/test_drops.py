@@ -104,7 +104,6 @@ def test_a_polygon_needs_a_width_and_columns_too():
 
 
 def drops(profile, stone, terms, constant, count, apart_px):
-    """All drops of one stone."""
     wanted = Wanted(count, np.array([apart_px]), np.array([7]))
     places, limit = module.drops(profile, in_a_row([stone]), terms, np.array([constant]), wanted)
     assert limit == np.inf

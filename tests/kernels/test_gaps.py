@@ -36,7 +36,6 @@ def scenes(draw):
 
 
 def gaps(corners, others, reach, corner=0.0, beyond=0.0):
-    """The gaps around a polygon among some others."""
     around = no_polygons().added(list(others))
     edges = polygon_edges(corners)
     return gaps_around(corners, edges, around, WIDTH, reach, corner, beyond=beyond)

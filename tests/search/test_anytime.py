@@ -70,12 +70,10 @@ def judged(planner):
 
 
 def same(one, other):
-    """Whether two packed walls are one wall."""
     return (one.groups, one.merit) == (other.groups, other.merit)
 
 
 def alike(one, other):
-    """Whether two searches have come to the same."""
     return (
         (one.walls, one.solves) == (other.walls, other.solves)
         and same(one.best, other.best)

@@ -51,7 +51,6 @@ def task(stones, size, cell_px=1.0, settings=QUICK, **options):
 
 
 def outline_of(stones, planned):
-    """Where a planned stone is."""
     outline = stones.by_id(planned.stone_id).outline_within(TOLERANCE_PX)
     return placed_outline(outline, planned.angle_deg, planned.x_px, planned.y_px)
 
@@ -263,7 +262,6 @@ def first_plan(yard):
 
 
 def poses(found):
-    """Stones, angles and corners in the order of placement."""
     placed = [(p, p.settled) for p in found.build.wall.placements if p.settled]
     return [(p.stone_id, p.posed.angle_deg, at.corners.tobytes()) for p, at in placed]
 

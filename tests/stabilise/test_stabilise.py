@@ -46,7 +46,6 @@ def bar_on_the_ledge(occupied):
 
 
 def holds(occupied, pose, wedges, margin=0.0):
-    """Whether a stone is stable on its wedges."""
     posed, row, col = pose
     scene = occupied.copy()
     for wedge in wedges:

@@ -17,15 +17,11 @@ from drystone.statics.result import LimitStatus
 from tests import strategies
 from tests.naive.statics import alphas_by_linprog, contact_matrices
 from tests.statics.walls import stacked
+from tests.strategies import picture
 
 FRICTIONS = st.sampled_from([0.58, 0.3, 0.1, 0.0, 0.9, 1.0, 50.0])
 ALLOWED = 1e-7
 """Of an unbalanced force, in mean weights, or of a closing contact, in the largest velocity."""
-
-
-def picture(*rows):
-    """Rows from the top as a label image."""
-    return np.array(rows, np.uint32)
 
 
 def scales(model):

@@ -9,48 +9,40 @@ from tests.verify.examples import WEDGE
 
 
 def codes(report):
-    """What was found."""
     return {problem.code for problem in report.problems}
 
 
 def step_of(plan, piece):
-    """The step of a stone or wedge."""
     return next(s for s in plan.steps if piece == (s.id if isinstance(s, WedgeStep) else s.stone))
 
 
 def changed(plan, piece, **values):
-    """Another claim about a stone or wedge."""
     step = step_of(plan, piece)
     steps = tuple(replace(s, **values) if s is step else s for s in plan.steps)
     return replace(plan, steps=steps)
 
 
 def moved(plan, piece, dx, dy):
-    """A stone at another place."""
     x, y = step_of(plan, piece).centroid
     return changed(plan, piece, centroid=(x + dx, y + dy))
 
 
 def reshaped(plan, change):
-    """Another polygon of the wedge."""
     polygon = change(np.array(step_of(plan, WEDGE).polygon))
     return changed(plan, WEDGE, polygon=tuple((float(x), float(y)) for x, y in polygon))
 
 
 def without(plan, piece):
-    """One step less."""
     steps = [s for s in plan.steps if s is not step_of(plan, piece)]
     return replace(plan, steps=tuple(replace(s, step=n) for n, s in enumerate(steps, 1)))
 
 
 def with_setting(plan, group, **values):
-    """Other settings of a stage."""
     return replace(
         plan, settings={**plan.settings, group: {**plan.settings.get(group, {}), **values}}
     )
 
 
 def swapped(plan, first, second):
-    """Two stones that have changed their places."""
     plan = changed(changed(plan, first, stone=999), second, stone=first)
     return changed(plan, 999, stone=second)

@@ -17,14 +17,12 @@ from tests.statics.walls import coursed, stacked
 
 @pytest.fixture(scope="module")
 def shaken():
-    """Friction, outlines and places."""
     settings = ScatterSettings(samples=40, mu=(0.4, 0.8), outline_noise=0.1, placement_noise=0.2)
     return scatter(model_from_labels(coursed(3, 2, 50)).model, settings)
 
 
 @pytest.fixture(scope="module")
 def falling():
-    """Some of these fall."""
     model = model_from_labels(stacked((20, 10, 0), (20, 10, 9))).model
     return scatter(model, ScatterSettings(samples=40, placement_noise=1.0, mu=(0.4, 0.8)))
 

@@ -60,7 +60,6 @@ def shown(method="paper"):
 
 
 def seen(page):
-    """Return the ids of the parts that are drawn."""
     return page.eval_on_selector_all(
         ".ds-part",
         "all => all.filter(g => getComputedStyle(g).display !== 'none').map(g => +g.dataset.id)",

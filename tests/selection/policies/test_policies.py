@@ -226,7 +226,6 @@ RNG = np.random.default_rng(0)
 
 
 def row(name, *offers):
-    """Return one feature of some offers."""
     return [float(value) for value in features(offers)[:, FEATURES.index(name)]]
 
 
