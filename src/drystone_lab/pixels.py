@@ -20,7 +20,7 @@ from drystone.model.wall import Labels
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LimitStatus
-from drystone_lab.statics_cases import HEIGHT, MU, WALLS, Rectangle, closed_forms
+from drystone_lab.statics_cases import HEIGHT, WALLS, Rectangle, closed_forms
 from drystone_lab.table import BENCH, BenchSettings, Cell, Table, worded
 from drystone_lab.timed_walls import exponents
 
@@ -249,24 +249,19 @@ def from_outlines(labels: Labels, mu: float) -> RigidBlockModel:
 
 
 def _published(*, quick: bool) -> Table:
-    cases = [
-        (f"Ferris and Tin-Loi, example {wall.number}", wall.rectangles, BRICK_PX / HEIGHT, MU,
-         (wall.associative, wall.associative))
-        for wall in (WALLS[:1] if quick else WALLS)
-    ]  # fmt: skip
-    cases += [
-        (case.name, case.rectangles, float(BRICK_PX), case.mu, (case.left, case.right))
-        for case in closed_forms()
-    ]
+    walls = enumerate(WALLS[:1] if quick else WALLS, 1)
+    cases = [(f"Ferris and Tin-Loi, example {k}", wall, BRICK_PX / HEIGHT) for k, wall in walls]
+    cases += [(case.name, case, float(BRICK_PX)) for case in closed_forms()]
     rows = []
-    for name, rectangles, px, mu, expected in cases:
-        labels = rasterised(rectangles, px)
+    for name, case, px in cases:
+        labels, expected = rasterised(case.rectangles, px), (case.left, case.right)
         pixels, outlines = (
-            _compared(model_of(labels, mu), expected) for model_of in (from_pixels, from_outlines)
+            _compared(model_of(labels, case.mu), expected)
+            for model_of in (from_pixels, from_outlines)
         )
         hits = all(error is not None and error <= 0.01 for _, error in (pixels, outlines))
         verdict = "pass" if hits else "miss"
-        rows.append((name, mu, _both(*expected), *pixels, *outlines, verdict))
+        rows.append((name, case.mu, _both(*expected), *pixels, *outlines, verdict))
     return worded(BENCH["pixels"]["published"], rows)
 
 

@@ -1,14 +1,21 @@
-"""Walls and arches whose load factor is known from a formula, or from other people's programs."""
+"""Suite "statics": walls and arches whose load factor is known, by the limit analysis.
+
+They are known from a formula, or from other people's programs.
+"""
 
 import math
 from dataclasses import dataclass, replace
 from itertools import accumulate, pairwise
+from typing import NamedTuple
 
 import numpy as np
 
 from drystone.contacts.given import model_from_json
+from drystone.statics.flow.nonassociative import NonassociativeResult, nonassociative_resistance
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel
+from drystone.statics.result import LimitResult
+from drystone_lab.table import BENCH, BenchSettings, Cell, Table, worded
 
 Rectangle = tuple[float, float, float, float]
 """x, y of the lower left corner, width, height."""
@@ -24,16 +31,19 @@ SHIFTS = (0.0, 0.1, 0.2, 0.4, 0.5)
 
 
 @dataclass(frozen=True)
-class ClosedForm:
-    """Rectangles on the ground and the load factors they must have."""
+class KnownWall:
+    """Rectangles on the ground, and what the answers of the limit analysis must be."""
 
     name: str
     rectangles: tuple[Rectangle, ...]  # Blocks 1, 2, ...
     mu: float  # Coefficient of friction
-    # left, right: Load factors towards -x and +x on the tilting table, the same for both flow
-    # rules: a stack with one bed a course is statically determinate
-    left: float
+    left: float  # left, right: Load factors towards -x and +x on the tilting table
     right: float
+    tolerance: float = 1e-6  # Of the load factors
+    # Range of accepted load factors without dilatancy, never above the others; None for the same: a
+    # stack with one bed a course is statically determinate
+    nonassociative: tuple[float, float] | None = None
+    may_not_converge: bool = False  # An answer without such a factor is accepted too
 
     @property
     def model(self) -> RigidBlockModel:
@@ -44,22 +54,47 @@ class ClosedForm:
         """
         return model_from_json({"blocks_xywh": self.rectangles, "mu": self.mu})
 
+    @property
+    def accepted(self) -> str:
+        """Range without dilatancy for people."""
+        if self.nonassociative is None:
+            return "the same"
+        low, high = self.nonassociative
+        return f"{low:g} to {high:g}" if low else f"at most {high:g}, or none"
 
-def single_block(width: float, height: float, mu: float) -> ClosedForm:
+    def fits(self, found: LimitResult) -> bool:
+        """Tell whether a load factor is certified, and the one that is known."""
+        if found.certificate is None or found.alpha is None:
+            return False
+        known = self.left if found.direction == "left" else self.right
+        return found.certificate.holds and abs(found.alpha - known) <= self.tolerance
+
+    def fits_without_dilatancy(self, found: NonassociativeResult, upper: float | None) -> bool:
+        """Tell whether a factor is checked, in its range, and not above the associative one."""
+        if found.alpha is None:
+            return self.may_not_converge
+        checked = found.check is not None and found.check.holds
+        below = upper is not None and found.alpha <= upper + 1e-7  # for rounding
+        known = self.left if found.direction == "left" else self.right
+        low, high = self.nonassociative or (known - self.tolerance, known + self.tolerance)
+        return checked and below and low <= found.alpha <= high
+
+
+def single_block(width: float, height: float, mu: float) -> KnownWall:
     """Return a block that slides at mu or overturns about its toe at b/h."""
     alpha = min(mu, width / height)
     name = f"block {width:g} x {height:g}: min(mu, b/h)"
-    return ClosedForm(name, ((0.0, 0.0, width, height),), mu, alpha, alpha)
+    return KnownWall(name, ((0.0, 0.0, width, height),), mu, alpha, alpha)
 
 
-def two_equal_blocks(width: float, height: float, mu: float) -> ClosedForm:
+def two_equal_blocks(width: float, height: float, mu: float) -> KnownWall:
     """Return two aligned blocks, which overturn as one at b/(2h)."""
     alpha = min(mu, width / (2.0 * height))
     rows = ((0.0, 0.0, width, height), (0.0, height, width, height))
-    return ClosedForm(f"two blocks {width:g} x {height:g}: min(mu, b/(2h))", rows, mu, alpha, alpha)
+    return KnownWall(f"two blocks {width:g} x {height:g}: min(mu, b/(2h))", rows, mu, alpha, alpha)
 
 
-def offset_stack(shift: float, mu: float) -> ClosedForm:
+def offset_stack(shift: float, mu: float) -> KnownWall:
     """Return a unit block on a unit block, shifted by 0 to .5 towards +x.
 
     Towards +x the upper block overturns about the lower one's edge at (.5 - s) / .5, both about
@@ -73,10 +108,10 @@ def offset_stack(shift: float, mu: float) -> ClosedForm:
     right = min(mu, (0.5 - shift) / 0.5, (1.0 - shift) / 2.0)
     left = min(mu, 1.0, (1.0 + shift) / 2.0)
     rows = ((0.0, 0.0, 1.0, 1.0), (shift, 1.0, 1.0, 1.0))
-    return ClosedForm(f"unit block on unit block, shifted by {shift:g}", rows, mu, left, right)
+    return KnownWall(f"unit block on unit block, shifted by {shift:g}", rows, mu, left, right)
 
 
-def running_bond() -> ClosedForm:
+def running_bond() -> KnownWall:
     """Return bricks 2 x 1 in four courses of running bond, 4 wide; they slide at mu = .58.
 
     No closed form; the value that a public program for block assemblies prints for this wall.
@@ -88,10 +123,10 @@ def running_bond() -> ClosedForm:
         for course in range(4)
         for x, width in (whole, halves)[course % 2]
     )
-    return ClosedForm("running bond of four courses, bricks 2 x 1: mu", rows, 0.58, 0.58, 0.58)
+    return KnownWall("running bond of four courses, bricks 2 x 1: mu", rows, 0.58, 0.58, 0.58)
 
 
-def closed_forms() -> tuple[ClosedForm, ...]:
+def closed_forms() -> tuple[KnownWall, ...]:
     """Return all cases of this page."""
     return (
         *(single_block(*block) for block in BLOCKS),
@@ -185,56 +220,136 @@ E, F, E_OPEN, F_OPEN = "hffffffh", "fffffff", "hf-ff-fh", "fh-hfh-hf"
 """Courses, and the same with openings."""
 
 
-@dataclass(frozen=True)
-class FerrisWall:
-    """One of the examples."""
+def ferris_wall(
+    number: int,
+    courses: tuple[str, ...],
+    alpha: float,
+    nonassociative: tuple[float, float],
+    *,
+    may_not_converge: bool = False,
+) -> KnownWall:
+    """Return one of the examples, with its courses from the bottom up.
 
-    number: int  # 1 to 6, as published
-    courses: tuple[str, ...]  # Bottom first
-    blocks: int
-    contacts: int
-    associative: float  # Load factor, the same in both directions
-    # Range of accepted load factors without dilatancy; never above the associative one
-    nonassociative: tuple[float, float]
-    may_not_converge: bool = False  # An answer without a factor is accepted too
-
-    @property
-    def rectangles(self) -> tuple[Rectangle, ...]:
-        """Blocks as x, y, width, height, course by course and from left to right."""
-        found = []
-        for row, course in enumerate(self.courses):
-            lefts = accumulate((BRICKS[brick] for brick in course), initial=0)
-            for brick, left in zip(course, lefts, strict=False):
-                if brick != "-":
-                    found.append((float(left), HEIGHT * row, float(BRICKS[brick]), HEIGHT))
-        return tuple(found)
-
-    @property
-    def model(self) -> RigidBlockModel:
-        """The wall as a model.
-
-        >>> model = WALLS[0].model
-        >>> len(model.blocks), len(model.interfaces)
-        (33, 83)
-        """
-        return model_from_json({"blocks_xywh": self.rectangles, "mu": MU})
+    >>> model = WALLS[0].model
+    >>> len(model.blocks), len(model.interfaces)
+    (33, 83)
+    """
+    found: list[Rectangle] = []
+    for row, course in enumerate(courses):
+        lefts = accumulate((BRICKS[brick] for brick in course), initial=0)
+        for brick, left in zip(course, lefts, strict=False):
+            if brick != "-":
+                found.append((float(left), HEIGHT * row, float(BRICKS[brick]), HEIGHT))
+    # They are published to five digits: half a unit of the last one.
+    return KnownWall(
+        f"example {number}, {len(found)} blocks", tuple(found), MU, alpha, alpha, 5e-6,
+        nonassociative, may_not_converge,
+    )  # fmt: skip
 
 
 WALLS = (
-    FerrisWall(1, (A, B) * 3, 33, 83, 0.64286, (0.638, 0.650)),
-    FerrisWall(2, (A, B) * 5, 55, 141, 0.58000, (0.550, 0.564)),
-    FerrisWall(
-        3, (P, Q, P, *(Q_OPEN, P_OPEN) * 2, Q_OPEN, P, Q, P), 46, 102, 0.40369, (0.350, 0.361)
+    ferris_wall(1, (A, B) * 3, 0.64286, (0.638, 0.650)),
+    ferris_wall(2, (A, B) * 5, 0.58000, (0.550, 0.564)),
+    ferris_wall(3, (P, Q, P, *(Q_OPEN, P_OPEN) * 2, Q_OPEN, P, Q, P), 0.40369, (0.350, 0.361)),
+    ferris_wall(4, (A, B, A, *(A_OPEN, B_OPEN) * 2, A_OPEN, A, B, A), 0.33195, (0.262, 0.267)),
+    ferris_wall(
+        5, (*(C, D, C, *(C_OPEN, D_OPEN) * 2, C_OPEN) * 2, C, D, C), 0.23964, (0.205, 0.217)
     ),
-    FerrisWall(
-        4, (A, B, A, *(A_OPEN, B_OPEN) * 2, A_OPEN, A, B, A), 55, 116, 0.33195, (0.262, 0.267)
-    ),
-    FerrisWall(
-        5, (*(C, D, C, *(C_OPEN, D_OPEN) * 2, C_OPEN) * 2, C, D, C), 61, 120, 0.23964,
-        (0.205, 0.217),
-    ),
-    FerrisWall(
-        6, (E, F, *(E, F, *(E_OPEN, F_OPEN) * 2, E_OPEN, F) * 2, E, F, E), 146, 345, 0.34782,
-        (0.0, 0.34783), may_not_converge=True,
+    ferris_wall(
+        6, (E, F, *(E, F, *(E_OPEN, F_OPEN) * 2, E_OPEN, F) * 2, E, F, E), 0.34782, (0.0, 0.34783),
+        may_not_converge=True,
     ),
 )  # fmt: skip
+"""Ferris and Tin-Loi (2001); no load factor without dilatancy is above the associative one."""
+
+QUICK_ARCHES = (*WITHOUT_SLIDING[:2], *WITH_FRICTION[2::2])
+
+
+class CaseRow(NamedTuple):
+    """A row of a table."""
+
+    case: str
+    mu: float
+    towards: str
+    expected: float
+    alpha: float | None
+    difference: float | None
+    gap: float | None
+    accepted: str
+    without_dilatancy: float | None
+    verdict: str
+
+
+def run(settings: BenchSettings) -> tuple[Table, ...]:
+    """Compare the limit analysis with all published cases."""
+    quick, of = settings.quick, BENCH["statics"]
+    # The quick version asks for few factors without dilatancy.
+    forms = [
+        row
+        for number, case in enumerate(closed_forms())
+        for row in _rows(case, both_rules=not quick or number % 3 == 0)
+    ]
+    walls = [
+        row
+        for number, wall in enumerate(WALLS, 1)
+        for row in _rows(wall, both_rules=not quick or number == 3)
+    ]
+    arches = QUICK_ARCHES if quick else (*WITHOUT_SLIDING, *WITH_FRICTION)
+    return (
+        worded(of["closed_forms"], forms),
+        worded(of["ferris"], walls),
+        worded(of["arches"], map(_arch_row, arches)),
+    )
+
+
+def _rows(case: KnownWall, *, both_rules: bool) -> list[CaseRow]:
+    """Return a row for each direction, or one when both say the same."""
+    both = lateral_resistance(case.model)
+    if not both_rules:
+        return _together(_row(case, both.left), _row(case, both.right))
+    without = nonassociative_resistance(case.model)
+    return _together(_row(case, both.left, without.left), _row(case, both.right, without.right))
+
+
+def _row(case: KnownWall, found: LimitResult, other: NonassociativeResult | None = None) -> CaseRow:
+    left = found.direction == "left"
+    known = case.left if left else case.right
+    fits = case.fits(found)
+    if other is not None:
+        fits = fits and case.fits_without_dilatancy(other, found.alpha)
+    return CaseRow(
+        case.name, case.mu, "-x" if left else "+x", known, found.alpha,
+        None if found.alpha is None else abs(found.alpha - known),
+        None if found.certificate is None else found.certificate.gap, case.accepted,
+        None if other is None else other.alpha, "pass" if fits else "miss",
+    )  # fmt: skip
+
+
+def _together(left: CaseRow, right: CaseRow) -> list[CaseRow]:
+    """Make one row of two that agree: the larger difference, and the larger gap."""
+    alike = all(
+        one is other if one is None or other is None else abs(one - other) <= 1e-6
+        for one, other in (
+            (left.alpha, right.alpha),
+            (left.without_dilatancy, right.without_dilatancy),
+        )
+    )
+    if not alike or (left.expected, left.verdict) != (right.expected, right.verdict):
+        return [left, right]
+    worse = max((left, right), key=lambda row: row.difference or 0.0)
+    gap = max((row.gap for row in (left, right) if row.gap is not None), default=None)
+    return [worse._replace(towards="both", gap=gap)]
+
+
+def _arch_row(case: ArchCase) -> tuple[Cell, ...]:
+    mu: Cell = "no sliding" if case.mu == NO_SLIDING else case.mu
+    # To a tenth of the tolerance.
+    least = least_thickness(case.count, case.mu, 1e-6)
+    if least is None or case.least is None:
+        words = [f"none up to {THICKEST:g}" if t is None else t for t in (case.least, least)]
+        return case.count, mu, *words, None, None, "pass" if least is case.least else "miss"
+    certificate = lateral_resistance(arch(case.count, least, case.mu)).right.certificate
+    gap = None if certificate is None else certificate.gap
+    difference = abs(least - case.least)
+    verdict = "pass" if difference <= 1e-5 else "miss"
+    return case.count, mu, case.least, least, difference, gap, verdict

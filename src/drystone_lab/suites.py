@@ -15,7 +15,7 @@ class Suite(NamedTuple):
 
 
 SUITES = {
-    "statics": Suite("published and closed-form cases of the limit analysis", "published"),
+    "statics": Suite("published and closed-form cases of the limit analysis", "statics_cases"),
     "pixels": Suite("the same cases from pixels, and tilted joints at 40 to 320 px", "pixels"),
     "walls": Suite(
         "planned walls: agreement of solvers and certificates at every step", "planned_walls"

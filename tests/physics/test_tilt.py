@@ -150,7 +150,7 @@ def test_a_published_wall_falls_without_dilatancy():
     scene, rng = scene_of(*wall.rectangles, mu=MU), np.random.default_rng(0)
     _, found = compare_with_tilt(scene, wall.model, rng, (quick,))
     assert found.simulated.direction == "right"
-    assert found.associative == pytest.approx(wall.associative, abs=1e-5)
+    assert found.associative == pytest.approx(wall.left, abs=1e-5)
     low, high = wall.nonassociative
     assert low <= found.simulated.alpha <= high
     assert low <= found.nonassociative <= high
