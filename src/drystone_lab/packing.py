@@ -20,7 +20,6 @@ from drystone_lab.search import SEARCH, WAYS, looked_at_times
 from drystone_lab.table import BENCH, BenchSettings, Cell, Table, worded
 from drystone_lab.walls import BRICKS, SEARCHED, chosen
 
-SECONDS = 30
 TURNS: dict[str, tuple[float, ...] | None] = {"quarter": (0.0, 90.0, 180.0, 270.0), "any": None}
 """Orientations that the packer may use, from the initial pose of a stone on."""
 
@@ -28,8 +27,8 @@ TURNS: dict[str, tuple[float, ...] | None] = {"quarter": (0.0, 90.0, 180.0, 270.
 def run(settings: BenchSettings) -> tuple[Table, ...]:
     """Pack the stones of every wall, and plan it in the same time."""
     packer = load_packer()
-    usual = 1 if settings.quick else SECONDS
-    seconds = max(1, round(settings.seconds[-1] if settings.seconds else usual))
+    (seconds,) = settings.seconds[-1:] or (1 if settings.quick else 30,)
+    seconds = max(1, round(seconds))
     rows: list[tuple[Cell, ...]] = []
     for target in chosen((BRICKS,) if settings.quick else SEARCHED, settings.only):
         stones = target.stones(settings.data)
@@ -89,8 +88,7 @@ def packed(spec: RunSpec, data: Path | None) -> RunOutcome:
     """
     packer = load_packer()
     stones = spec.source.stones(data)
-    width = spec.width or float(stones.source.width_px)
-    height = spec.height or float(stones.source.height_px)
+    width, height = spec.size(stones)
     seconds = int(dict(spec.changes)["seconds"])
     started = time.perf_counter()
     strip = packed_width_px(packer, stones, height, TURNS["quarter"], seconds, spec.seed)

@@ -2,7 +2,7 @@
 
 import io
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -17,7 +17,7 @@ from drystone.photo.segment_photo import SegmentedPhoto, segment_photo
 from drystone_lab.photographs.layout import LEVELS, PhotoLevel
 from drystone_lab.photographs.real import ALL, RealPhoto, pixels_of, there, truth_of
 from drystone_lab.photographs.scene import Photograph, layout_of, photograph
-from drystone_lab.table import BENCH, BenchSettings, Cell, Table, worded
+from drystone_lab.table import BENCH, BenchSettings, Cell, Rows, Table, worded
 
 MATCHED = 0.5
 """Intersection over union from which on a stone counts as found."""
@@ -38,7 +38,7 @@ class Score:
 def run(settings: BenchSettings) -> tuple[Table, ...]:
     """Render the photographs, find the stones, compare."""
 
-    def said(rows: Iterable[tuple[Cell, ...]]) -> Iterator[tuple[Cell, ...]]:
+    def said(rows: Rows) -> Rows:
         for row in rows:
             settings.say(", ".join(map(str, row)))
             yield row

@@ -27,7 +27,7 @@ from drystone_lab.paired import median_difference, median_of
 from drystone_lab.planned_walls import SETS, missing_data
 from drystone_lab.runs.spec import Changes, nested, told
 from drystone_lab.runs.workers import Crew
-from drystone_lab.table import BENCH, BenchSettings, Cell, Table, read_rows, worded
+from drystone_lab.table import BENCH, BenchSettings, Cell, Rows, Table, read_rows, worded
 from drystone_lab.walls import BRICKS, SEARCHED, UNSEEN, Target, chosen
 
 Clock = Callable[[], float]
@@ -294,17 +294,19 @@ def searched(
     ]
     counts = {target.name: len(stones) for target, stones in walls}
     left = [task for task in tasks if not known.keys() >= set(task.runs)]
-    for task, results in _done(left, settings.jobs or 1):
-        found = dict(zip(task.runs, results, strict=True))
-        new = {run: result for run, result in found.items() if run not in known}
-        known |= new
-        if settings.runs is not None:
-            append_results(settings.runs, new.items())
-        for run, result in new.items():
-            settings.say(
-                f"{run.wall}, {run.way}, seed {run.seed}, {run.seconds:g} s: "
-                f"{in_words(result, counts[run.wall])}"
-            )
+    jobs = settings.jobs or 1
+    with Crew(0 if jobs == 1 else jobs, fresh=True) as processes:
+        for task, results in map(do, left) if jobs == 1 else processes.work(do, left):
+            found = dict(zip(task.runs, results, strict=True))
+            new = {run: result for run, result in found.items() if run not in known}
+            known |= new
+            if settings.runs is not None:
+                append_results(settings.runs, new.items())
+            for run, result in new.items():
+                settings.say(
+                    f"{run.wall}, {run.way}, seed {run.seed}, {run.seconds:g} s: "
+                    f"{in_words(result, counts[run.wall])}"
+                )
     return {run: known[run] for task in tasks for run in task.runs}
 
 
@@ -316,17 +318,6 @@ def chosen_ways(names: Sequence[str]) -> tuple[str, ...]:
         cure = f"There are {', '.join(map(repr, WAYS))}."
         raise UsageError("E138", what, where="--policy", cure=cure)
     return tuple(way for way in WAYS if not names or way in names)
-
-
-def _done(
-    tasks: Sequence[SearchTask], jobs: int
-) -> Iterator[tuple[SearchTask, list[SearchResult]]]:
-    """Do tasks, and give their results as they come."""
-    if jobs == 1:
-        yield from map(do, tasks)
-    else:
-        with Crew(jobs, fresh=True) as processes:
-            yield from processes.work(do, tasks)
 
 
 def do(task: SearchTask) -> tuple[SearchTask, list[SearchResult]]:
@@ -366,29 +357,24 @@ def run(settings: BenchSettings) -> tuple[Table, ...]:
     with_settings = [f"With {told(settings.changes)}."] if settings.changes else []
     notes = (*with_settings, *missing_data(settings))
     of = BENCH["search"]
+    names = {way: method_name(way, settings.changes) for way in chosen_ways(settings.policies)}
     for seconds in times:
-        medians: list[tuple[Cell, ...]] = []
-        differences: list[tuple[Cell, ...]] = []
-        for target, stones in walls:
-            found = {
-                way: [
-                    results[
-                        SearchRun(target.name, method_name(way, settings.changes), seed, seconds)
-                    ]
-                    for seed in seeds
-                ]
-                for way in chosen_ways(settings.policies)
-            }
-            medians += _rows(target.name, len(stones), found)
-            differences += _differences(target.name, found)
-        tables.append(worded(of["medians"], medians, more=notes, seconds=seconds, seeds=len(seeds)))
+        found = [
+            (target.name, len(stones), {
+                way: [results[SearchRun(target.name, name, seed, seconds)] for seed in seeds]
+                for way, name in names.items()
+            })
+            for target, stones in walls
+        ]  # fmt: skip
+        rows = [row for one in found for row in _rows(*one)]
+        tables.append(worded(of["medians"], rows, more=notes, seconds=seconds, seeds=len(seeds)))
+        rows = [row for wall, _, by_way in found for row in _differences(wall, by_way)]
         columns = {"<figures>": FIGURES}
-        tables.append(worded(of["paired"], differences, columns=columns, seconds=seconds))
+        tables.append(worded(of["paired"], rows, columns=columns, seconds=seconds))
     return (*tables, masons_walls(settings))
 
 
-def _rows(wall: str, stones: int, by_way: ByWay) -> list[tuple[Cell, ...]]:
-    rows: list[tuple[Cell, ...]] = []
+def _rows(wall: str, stones: int, by_way: ByWay) -> Rows:
     for way, results in by_way.items():
         placed = [one["placed"] for one in results if one["placed"] is not None]
         medians, spent = (
@@ -397,12 +383,10 @@ def _rows(wall: str, stones: int, by_way: ByWay) -> list[tuple[Cell, ...]]:
         )
         words = f"{min(placed)}-{max(placed)} of {stones}"
         possible = results[0]["possible F_SF"]
-        rows.append((wall, way, words, *medians[:2], possible, *medians[2:], *spent))
-    return rows
+        yield wall, way, words, *medians[:2], possible, *medians[2:], *spent
 
 
-def _differences(wall: str, by_way: ByWay) -> list[tuple[Cell, ...]]:
-    rows: list[tuple[Cell, ...]] = []
+def _differences(wall: str, by_way: ByWay) -> Rows:
     for way in (RESTARTS, WEDGED, NO_COURSES):
         if not by_way.keys() >= {SEARCH, way}:
             continue
@@ -413,17 +397,17 @@ def _differences(wall: str, by_way: ByWay) -> list[tuple[Cell, ...]]:
         merits = zip(*values["merit"], strict=True)
         better = [a is not None and b is not None and a > b for a, b in merits]
         cells = [median_difference(first, second) for first, second in values.values()]
-        rows.append((wall, way, f"{sum(better)} of {len(better)}", *cells))
-    return rows
+        yield wall, way, f"{sum(better)} of {len(better)}", *cells
 
 
 def masons_walls(settings: BenchSettings) -> Table:
     """Measure the walls of Almeida et al. (2021) as they were traced, at the working scales."""
-    rows = []
-    for wall in SETS:
-        if settings.data is not None and wall.source.is_there(settings.data):
-            labels = wall.source.labels(settings.data)
-            rows.append(masons_row(wall.name, labels, wall.scale))
+    data = settings.data
+    rows = [
+        masons_row(wall.name, wall.source.labels(data), wall.scale)
+        for wall in SETS
+        if data is not None and wall.source.is_there(data)
+    ]
     return worded(BENCH["search"]["masons"], rows)
 
 

@@ -22,7 +22,7 @@ from drystone.statics.limit import lateral_resistance
 from drystone.statics.loads import Loads, point_load, weight
 from drystone.statics.model import RigidBlockModel
 from drystone_lab.reproduce.cells import rounded
-from drystone_lab.table import BENCH, BenchSettings, Cell, Table, worded
+from drystone_lab.table import BENCH, BenchSettings, Rows, Table, worded
 
 GRAVITY = 9.81
 """m/s2."""
@@ -176,12 +176,30 @@ def run(settings: BenchSettings) -> tuple[Table, ...]:
     asked = SERIES
     if settings.quick:
         asked = tuple(replace(series, tests=series.tests[:1]) for series in SERIES)
-    tables = _predicted(model, asked), _by_test(model, asked), _scatter(model, asked)
+    about = (
+        f"{series.name}: {series.course_count} courses of {series.block_length:g} x "
+        f"{series.block_height:g} m, wall {series.length:g} x {series.height:g} x "
+        f"{series.thickness:g} m, V at {series.load_height:g} m, "
+        f"{series.density_kg_m3:g} kg/m3 (assumed)."
+        for series in asked
+    )
+    named = (*((one.name, (one,)) for one in asked), ("all", asked))
+    scatter: Rows = ((name, *_mean_and_deviation(_ratios(model, each))) for name, each in named)
+    tables = (
+        _worded("predicted", _predicted(model, asked), about),
+        _worded("by_test", _by_test(model, asked)),
+        _worded("scatter", scatter),
+    )
     if settings.quick:
         return tables
     if settings.output is not None:
         _draw(model, settings.output / "shear_tests.png")
-    return (*tables, _friction(model), _details(model))
+    friction: Rows = (
+        (one.name, mu, *_mean_and_deviation(_ratios(model, (one,), mu)))
+        for one in SERIES
+        for mu in FRICTION_BAND
+    )
+    return (*tables, _worded("friction", friction), _worded("details", _details(model)))
 
 
 MODELS = tuple(
@@ -191,7 +209,7 @@ MODELS = tuple(
 )
 
 
-def _worded(name: str, rows: Iterable[tuple[Cell, ...]], notes: Iterable[str] = ()) -> Table:
+def _worded(name: str, rows: Rows, notes: Iterable[str] = ()) -> Table:
     return worded(BENCH["shear"][name], rows, columns={"<models>": MODELS}, more=notes)
 
 
@@ -216,54 +234,24 @@ def _ratios(
     ]
 
 
-def _predicted(model: ShearModel, all_series: Sequence[ShearSeries]) -> Table:
-    rows: list[tuple[Cell, ...]] = []
+def _predicted(model: ShearModel, all_series: Sequence[ShearSeries]) -> Rows:
     for series in all_series:
         for vertical in dict.fromkeys(test.vertical_kn for test in series.tests):
             tests = [test for test in series.tests if test.vertical_kn == vertical]
             peaks = [peak for test in tests for peak in test.peaks_kn]
             measured = f"{min(peaks):g} to {max(peaks):g}" if len(peaks) > 1 else f"{peaks[0]:g}"
-            values = [rounded(v, 1) for v in _four(model, series, vertical)]
-            rows.append((series.name, vertical, len(tests), measured, *values))
-    about = (
-        f"{series.name}: {series.course_count} courses of {series.block_length:g} x "
-        f"{series.block_height:g} m, wall {series.length:g} x {series.height:g} x "
-        f"{series.thickness:g} m, V at {series.load_height:g} m, "
-        f"{series.density_kg_m3:g} kg/m3 (assumed)."
-        for series in all_series
-    )
-    return _worded("predicted", rows, about)
+            values = (rounded(v, 1) for v in _four(model, series, vertical))
+            yield series.name, vertical, len(tests), measured, *values
 
 
-def _by_test(model: ShearModel, all_series: Sequence[ShearSeries]) -> Table:
-    rows: list[tuple[Cell, ...]] = []
+def _by_test(model: ShearModel, all_series: Sequence[ShearSeries]) -> Rows:
     for series in all_series:
         for test, ratios in zip(series.tests, _ratios(model, [series]), strict=True):
             peaks = " / ".join(f"{peak:g}" for peak in test.peaks_kn)
-            values = [rounded(ratio, 2) for ratio in ratios]
-            rows.append((test.name, test.vertical_kn, peaks, *values))
-    return _worded("by_test", rows)
+            yield test.name, test.vertical_kn, peaks, *(rounded(ratio, 2) for ratio in ratios)
 
 
-def _scatter(model: ShearModel, all_series: Sequence[ShearSeries]) -> Table:
-    named = (*((one.name, (one,)) for one in all_series), ("all", all_series))
-    rows: list[tuple[Cell, ...]] = [
-        (name, *_mean_and_deviation(_ratios(model, series))) for name, series in named
-    ]
-    return _worded("scatter", rows)
-
-
-def _friction(model: ShearModel) -> Table:
-    rows: list[tuple[Cell, ...]] = [
-        (one.name, mu, *_mean_and_deviation(_ratios(model, (one,), mu)))
-        for one in SERIES
-        for mu in FRICTION_BAND
-    ]
-    return _worded("friction", rows)
-
-
-def _details(model: ShearModel) -> Table:
-    rows: list[tuple[Cell, ...]] = []
+def _details(model: ShearModel) -> Rows:
     for series in SERIES[:2]:
         loads = sorted({test.vertical_kn for test in series.tests})
         variants = [("as above", series, False), ("half blocks in the lowest course", series, True)]
@@ -276,8 +264,7 @@ def _details(model: ShearModel) -> Table:
             for name, varied, halves in variants:
                 loading = Loading(vertical, level=False, halves_first=halves)
                 values = (rounded(v, 2) for v in model(varied, loading))
-                rows.append((series.name, vertical, name, *values))
-    return _worded("details", rows)
+                yield series.name, vertical, name, *values
 
 
 def _mean_and_deviation(ratios: Sequence[Sequence[float | None]]) -> list[str]:

@@ -13,6 +13,7 @@ from drystone.errors import DrystoneError
 from drystone_lab.runs.spec import Changes
 
 Cell = str | int | float | bool | None
+Rows = Iterable[tuple[Cell, ...]]
 Row = TypeVar("Row")
 
 
@@ -99,7 +100,7 @@ def read_rows(
 
 def worded(
     words: Mapping[str, Any],
-    rows: Iterable[tuple[Cell, ...]],
+    rows: Rows,
     *found: object,
     columns: Mapping[str, Sequence[str]] = MappingProxyType({}),
     more: Iterable[str] = (),
@@ -126,7 +127,7 @@ def worded(
 BENCH: Mapping[str, Mapping[str, Any]] = MappingProxyType(
     tomllib.loads(Path(__file__).with_name("tables.toml").read_text("utf-8"))
 )
-"""Words of the tables of the suites."""
+"""The suites of `drystone bench` by name, and words of their tables."""
 
 
 @dataclass(frozen=True)

@@ -56,8 +56,7 @@ class Target:
 
     def size(self, stones: StoneSet) -> tuple[float, float]:
         """Return the width and height of the wall, source px."""
-        source = stones.source
-        return self.width or float(source.width_px), self.height or float(source.height_px)
+        return self.run(0).size(stones)
 
 
 R = Target("R", published("almeida/R.png"), 1435, 380, 0.2, 1)

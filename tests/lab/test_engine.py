@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from drystone_lab import engine, tilt
+from drystone_lab import engine
 from drystone_lab.engine import EngineWall
 from drystone_lab.table import BenchSettings
 from drystone_lab.walls import BRICKS
@@ -71,7 +71,7 @@ def test_what_counts_as_agreement(factors, motion, fell, agreement):
         direction="left", fell_at_rest=fell, settled_shift=0.1, interval=lambda _: motion
     )
     both = dict(zip(("associative", "nonassociative"), factors, strict=True))
-    assert tilt._row("wall", SimpleNamespace(simulated=simulated, **both))[5] == agreement
+    assert engine._tilted_row("wall", SimpleNamespace(simulated=simulated, **both))[5] == agreement
 
 
 def test_a_picture_is_tilted_and_predicted():
@@ -79,7 +79,7 @@ def test_a_picture_is_tilted_and_predicted():
     pytest.importorskip("pymunk", reason="pymunk is not installed (extra `physics`)")
     after = SimpleNamespace(labels=np.ones((40, 20), np.uint32))
     wall = SimpleNamespace(name="stone", after=(after,), mu=0.58)
-    for row in tilt._rows(wall, BenchSettings(quick=True)):
+    for row in engine._tilted_rows(wall, BenchSettings(quick=True)):
         assert row[2:4] == pytest.approx((0.5, 0.5))
         low, high = (float(end) for end in row[4].split(" to "))
         assert low == pytest.approx(0.5, abs=0.01)

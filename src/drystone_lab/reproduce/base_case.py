@@ -24,8 +24,9 @@ from drystone_lab.pictures.charts import group_panels
 from drystone_lab.pictures.walls import Panel, sheet_of, wall_aspect
 from drystone_lab.reproduce import cells
 from drystone_lab.reproduce.cells import rounded
-from drystone_lab.reproduce.item import Claimed, ItemFigure, PaperItem, Rows
+from drystone_lab.reproduce.item import Claimed, ItemFigure, PaperItem
 from drystone_lab.reproduce.study import Study, StudyWalls, Trials, sheet
+from drystone_lab.table import Rows
 from drystone_lab.walls import IR, LIU_5, PR
 
 ALPHAS: Mapping[str, float] = {"left": 0.79, "right": 0.71}

@@ -21,7 +21,8 @@ from drystone.kernels.boundary import EMPTY, boundary_of
 from drystone.model.wall import Labels, Wall
 from drystone.statics.model import GROUND, Interface, RigidBlockModel
 from drystone_lab.pictures.walls import plot_landscape
-from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem, Rows
+from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem
+from drystone_lab.table import Rows
 from drystone_lab.walls import PR, Target
 
 NORMAL_PX = 2.5

@@ -16,7 +16,8 @@ from drystone.model.stone import StoneSet
 from drystone.poses import PoseBook
 from drystone_lab.pictures.charts import name_axes
 from drystone_lab.reproduce.cells import rounded
-from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem, Rows
+from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem
+from drystone_lab.table import Rows
 from drystone_lab.walls import MASONS, PR, Target
 
 MARKERS = ("o", "s", "D", "^", "v", "P", "X", "p")

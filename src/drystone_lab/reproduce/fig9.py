@@ -10,7 +10,7 @@ from matplotlib.patches import FancyArrowPatch, Rectangle
 from matplotlib.patheffects import withStroke
 
 from drystone.drawing.canvas import draw_block, fit_axes
-from drystone.drawing.outlines import Loop, label_regions
+from drystone.drawing.outlines import Bounds, Loop, label_regions
 from drystone.drawing.palette import GREY, OUTLINE_COLOUR, WEDGE_COLOUR
 from drystone.kernels.raster import Mask
 from drystone.model.placement import Wedge
@@ -25,18 +25,14 @@ from drystone.stabilise.stabilise import (
     support_polyline,
 )
 from drystone_lab.reproduce.construction import Moment, construction
-from drystone_lab.reproduce.item import Context, ItemFigure, PaperItem, Rows
+from drystone_lab.reproduce.item import Context, ItemFigure, PaperItem
+from drystone_lab.table import Rows
 from drystone_lab.walls import PR, Target
 
 BUILT, STONE, GHOST = "#e4e0d8", "#9ecae1", "#0072b2"
 LINE, MASS = "#d55e00", "#000000"
 
 PointXY = tuple[float, float]
-Window = tuple[float, float, float, float]
-"""x0, y0, x1, y1, working px, y up from the ground."""
-
-MARGIN_PX = 6.0
-"""What is shown above the stones; twice as much on the other sides."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,14 +83,15 @@ def plot_standing(
     ax: Axes,
     labels: Labels,
     standing: SupportedStone,
-    window: Window,
+    window: Bounds,
     *,
     before: SupportedStone | None = None,
     title: str = "",
 ) -> None:
     """Draw a stone on its support with the points of Fig. 9.
 
-    `labels` is the landscape without the stone; `before` is where it was at first, dashed.
+    `labels` is the landscape without the stone, `window` what is shown of it, working px;
+    `before` is where the stone was at first, dashed.
     """
     ax = fit_axes(ax, window)
     for region in label_regions(labels):
@@ -177,22 +174,12 @@ class Unstable:
     wedged: SupportedStone | None
 
     @property
-    def stone_id(self) -> int:
-        """Id of the stone."""
-        return self.trial.pose[0].stone.id
-
-    @property
     def turn_deg(self) -> float | None:
         """How far it was turned, counter-clockwise, in [-180, 180)."""
         if self.turned is None:
             return None
         turn = self.turned.pose[0].angle_deg - self.trial.pose[0].angle_deg
         return float((turn + 180.0) % 360.0 - 180.0)
-
-    @property
-    def sign_agrees(self) -> bool:
-        """Whether AB x AC says to which side the centre of mass is beyond A."""
-        return (self.trial.cross < 0) == (self.trial.falls > 0)
 
 
 def _treated(moment: Moment, trial: SupportedStone) -> Unstable:
@@ -221,11 +208,6 @@ def _standing(moment: Moment, pose: Pose, wedges: tuple[Wedge, ...] = ()) -> Sup
     return SupportedStone(pose, support, falls, wedges, len(scene))
 
 
-WIDE = 0.1
-"""Cases that are drawn have a support at least this wide, in widths of the stone, so that AB is
-seen, unless there is none."""
-
-
 @dataclass(frozen=True, eq=False)
 class Falls:
     """What was tried before each step of a run, what falls there, and the cases that are drawn."""
@@ -237,10 +219,14 @@ class Falls:
     @property
     def shown(self) -> tuple[Unstable, ...]:
         """The case that is turned most, and that of the largest wedge where turning fails."""
+
+        def wedge_area(case: Unstable) -> int:
+            return sum(wedge.area_px for wedge in case.wedged.wedges) if case.wedged else 0
+
         wedged = [one for one in self.unstable if one.wedged is not None]
         turned = [one for one in wedged if one.turned is not None]
         stuck = [one for one in wedged if one.turned is None]
-        found = _largest(turned, lambda one: abs(one.turn_deg or 0.0)), _largest(stuck, _wedge_area)
+        found = _largest(turned, lambda one: abs(one.turn_deg or 0.0)), _largest(stuck, wedge_area)
         return tuple(one for one in found if one is not None)
 
 
@@ -260,23 +246,21 @@ def falls(context: Context, wall: Target = PR) -> Falls:
 
 
 def _largest(cases: Sequence[Unstable], size: Callable[[Unstable], float]) -> Unstable | None:
+    """Return the largest case whose support is wide enough to see AB, if there is one."""
     wide = [
         one for one in cases
         if one.trial.support.right_x - one.trial.support.left_x
-        >= WIDE * one.trial.pose[0].width_px
+        >= 0.1 * one.trial.pose[0].width_px
     ]  # fmt: skip
     return max(wide or cases, key=size, default=None)
-
-
-def _wedge_area(case: Unstable) -> int:
-    return sum(wedge.area_px for wedge in case.wedged.wedges) if case.wedged is not None else 0
 
 
 def _counts(found: Falls) -> Rows:
     unstable = found.unstable
     turned = [one for one in unstable if one.turned is not None]
     stuck = [one for one in unstable if one.turned is None]
-    wrong = [one for one in unstable if not one.sign_agrees]
+    # Those that AB x AC would turn to the side on which the centre of mass is not beyond A.
+    wrong = [one for one in unstable if (one.trial.cross < 0) != (one.trial.falls > 0)]
     yield "tried", found.trials
     yield "not stable", len(unstable)
     yield "stable after turning", len(turned)
@@ -298,7 +282,8 @@ def _cases(found: Falls) -> Rows:
             turn = (case.turn_deg, case.pivots) if pose == "turned" else (None, None)
             size = standing.wedges[0].mask.shape if standing.wedges else (None, None)
             cross = round(standing.cross, 2)
-            yield case.stone_id, case.moment.number, pose, *points, cross, *turn, *size
+            stone_id = case.trial.pose[0].stone.id
+            yield stone_id, case.moment.number, pose, *points, cross, *turn, *size
 
 
 def _picture(found: Falls) -> ItemFigure:
@@ -308,12 +293,9 @@ def _picture(found: Falls) -> ItemFigure:
         stands = [one for one in (case.trial, case.turned, case.wedged) if one is not None]
         points = np.concatenate([loop for one in stands for loop in one.loops])
         (left, bottom), (right, top) = points.min(axis=0).tolist(), points.max(axis=0).tolist()
-        window = (
-            left - 2 * MARGIN_PX, max(bottom - 2 * MARGIN_PX, -2.0),
-            right + 2 * MARGIN_PX, top + MARGIN_PX,
-        )  # fmt: skip
+        window = left - 12.0, max(bottom - 12.0, -2.0), right + 12.0, top + 6.0
         labels = case.moment.wall.labels
-        title = f"stone {case.stone_id} before step {case.moment.number}: falls"
+        title = f"stone {case.trial.pose[0].stone.id} before step {case.moment.number}: falls"
         plot_standing(axes[0], labels, case.trial, window, title=title)
         turned = "" if case.turn_deg is None else f"turned by {case.turn_deg:g}°"
         others = (axes[1], case.turned, turned), (axes[2], case.wedged, "wedged")

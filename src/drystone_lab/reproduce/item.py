@@ -14,7 +14,7 @@ from drystone_lab import timed_walls
 from drystone_lab.reproduce.cells import COLUMNS, METRICS, WINS
 from drystone_lab.runs.outcome import Runner, RunOutcome
 from drystone_lab.runs.spec import RunSpec
-from drystone_lab.table import Cell, Table, worded
+from drystone_lab.table import Rows, Table, worded
 
 COLUMN_SETS: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {
@@ -76,9 +76,6 @@ class Output:
     times: tuple[tuple[str, Table], ...]
     pictures: tuple[ItemFigure, ...]
     runs: tuple[RunSpec, ...]  # That the item is made of, for its JSON
-
-
-Rows = Iterable[tuple[Cell, ...]]
 
 
 class Claimed(NamedTuple):

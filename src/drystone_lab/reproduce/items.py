@@ -3,10 +3,10 @@
 import tomllib
 from collections.abc import Mapping
 from dataclasses import replace
-from importlib import import_module
 from pathlib import Path
+from pkgutil import resolve_name
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
 from drystone.errors import UsageError
 
@@ -44,6 +44,5 @@ def item_names(asked: str) -> tuple[str, ...]:
 
 def item_named(name: str) -> "PaperItem":
     """Return one of :data:`ITEMS`."""
-    module, _, item = ITEMS[name]["made"].partition(".")
-    made = getattr(import_module(f"drystone_lab.reproduce.{module}"), item)
-    return replace(cast("PaperItem", made), words=ITEMS[name])
+    item: PaperItem = resolve_name(f"drystone_lab.reproduce.{ITEMS[name]['made']}")
+    return replace(item, words=ITEMS[name])

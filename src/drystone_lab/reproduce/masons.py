@@ -1,4 +1,4 @@
-"""The masons' walls: Fig. 13, with their gaps closed (§5.1); Table 2 and Fig. 18, beside ours."""
+"""The masons' walls: Fig. 13, gaps closed (§5.1); Table 2, Figs. 17 and 18, beside ours (§5.2)."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -8,14 +8,18 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from scipy import ndimage
 
 from drystone.clusters import cluster_stones
 from drystone.contacts.blocks import model_from_labels
 from drystone.contacts.gaps import model_with_closed_gaps, settle_gaps
-from drystone.metrics.frame import reduce_labels
+from drystone.drawing.pictures.stones import plot_joint_paths
+from drystone.metrics import paths as joint_paths
+from drystone.metrics.frame import frame_wall, reduce_labels
 from drystone.metrics.measure import WallMetrics, measure_labels
+from drystone.metrics.paths import PAD_LEFT, PAD_TOP, SHORTEST, JointPath, joint_mask, mean_excess
 from drystone.model.stone import StoneSet
 from drystone.model.wall import Labels
 from drystone.poses import PoseBook
@@ -23,11 +27,11 @@ from drystone.statics.limit import lateral_resistance
 from drystone_lab.pictures import walls as sheets
 from drystone_lab.reproduce import cells
 from drystone_lab.reproduce.cells import METRICS, rounded
-from drystone_lab.reproduce.item import Context, ItemFigure, PaperItem, Rows
+from drystone_lab.reproduce.item import Context, ItemFigure, PaperItem
 from drystone_lab.reproduce.study import Study, StudyWalls, Trials, medians, of_each
 from drystone_lab.runs.outcome import RunOutcome
-from drystone_lab.table import Cell
-from drystone_lab.walls import FIVE, MASONS, Target
+from drystone_lab.table import Cell, Rows
+from drystone_lab.walls import FIVE, MASONS, PR, Target
 
 MOVES = ((1, -1), (1, 0), (0, -1), (1, 1), (-1, -1), (-1, 0), (0, 1), (-1, 1))
 """Steps of a stone, px down and to the right; the first of equally good ones is taken."""
@@ -164,15 +168,15 @@ def treatments(wall: TracedWall) -> Iterator[tuple[str, float | None, str]]:
         yield name, rounded(both.value), str(told.status)
 
 
+def masons_walls(context: Context, walls: Sequence[Target] = MASONS) -> list[TracedWall]:
+    """Read walls."""
+    return [masons_wall(wall, context.data) for wall in walls]
+
+
 def measured(labels: Labels) -> WallMetrics:
     """Return the metrics of a wall by our definition (DESIGN 5), F_LR of its pixels among them."""
     resistance = lateral_resistance(model_from_labels(labels).model)
     return measure_labels(labels, lateral_resistance=resistance.value)
-
-
-def masons_walls(context: Context, walls: Sequence[Target] = MASONS) -> list[TracedWall]:
-    """Read walls."""
-    return [masons_wall(wall, context.data) for wall in walls]
 
 
 def _metrics(walls: Sequence[TracedWall]) -> Rows:
@@ -262,11 +266,6 @@ class FiveWall(NamedTuple):
         return self.trials.wall.source.stones(self.built.context.data)
 
     @property
-    def name(self) -> tuple[int, str]:
-        """Number in Table 2, and name of the stones."""
-        return self.trials.wall.number, self.trials.wall.name
-
-    @property
     def best(self) -> int:
         """Place of the best trial by the paper's rule."""
         return best_trial(self.trials.outcomes)
@@ -282,38 +281,39 @@ def five_walls(found: StudyWalls) -> list[FiveWall]:
     return walls
 
 
-def _references(wall: FiveWall) -> Iterator[tuple[Cell, ...]]:
-    number, papers = wall.name[0], REFERENCES.get(wall.name[0], NONE)
+def _references(wall: FiveWall) -> Rows:
+    number, name = wall.trials.wall.number, wall.trials.wall.name
+    papers = REFERENCES.get(number, NONE)
     if wall.masons is None:
         yield number, "the paper's", "reference", None, None, *NONE, *papers
         return
     metrics = [(what, measured(labels)) for what, labels in wall.masons.both]
     count = metrics[0][1].stones
     for what, ours in metrics:
-        figures = (rounded(getattr(ours, name)) for name in METRICS)
-        yield *wall.name, f"masons, {what}", count, count, *figures, *papers
+        figures = (rounded(getattr(ours, metric)) for metric in METRICS)
+        yield number, name, f"masons, {what}", count, count, *figures, *papers
 
 
-def _ours(wall: FiveWall) -> Iterator[tuple[Cell, ...]]:
+def _ours(wall: FiveWall) -> Rows:
     trials, count = wall.trials, len(wall.stones)
-    seeds, papers = len(trials.outcomes), CONSTRUCTED.get(wall.name[0], NONE)
-    stand_in = trials.wall.stand_in
+    number, name, stand_in = trials.wall.number, trials.wall.name, trials.wall.stand_in
+    seeds, papers = len(trials.outcomes), CONSTRUCTED.get(number, NONE)
 
     def one(what: str, place: int) -> tuple[Cell, ...]:
         outcome = trials.outcomes[place]
         named = f"{what}, seed {trials.specs[place].seed}"
-        return (*wall.name, named, *cells.placed_of(outcome), *cells.metric_cells(outcome))
+        return (number, name, named, *cells.placed_of(outcome), *cells.metric_cells(outcome))
 
     yield *one("fixed seed", 0), *NONE
-    middle = (rounded(trials.median(name)) for name in METRICS)
-    yield *wall.name, f"median of {seeds}", trials.median("placed"), count, *middle, *NONE
+    middle = (rounded(trials.median(metric)) for metric in METRICS)
+    yield number, name, f"median of {seeds}", trials.median("placed"), count, *middle, *NONE
     yield *one(f"best of {seeds}", wall.best), *(NONE if stand_in else papers)
     if stand_in:
-        yield wall.name[0], "the paper's", "best of 20", None, None, *NONE, *papers
+        yield number, "the paper's", "best of 20", None, None, *NONE, *papers
     filled = [value or 0.0 for value in trials.values("F_SF")]
     yield *one(f"fullest of {seeds}", filled.index(max(filled))), *NONE  # the earlier one of equals
     most = rounded(float(wall.stones.total_area_px) / (trials.wall.width * trials.wall.height))
-    yield *wall.name, "all stones", count, count, most, None, None, None, *NONE
+    yield number, name, "all stones", count, count, most, None, None, None, *NONE
 
 
 def _five_panels(wall: FiveWall) -> list[sheets.Panel]:
@@ -348,4 +348,74 @@ TABLE2 = PaperItem(
             "fig18", sheets.sheet_of([panel for wall in walls for panel in _five_panels(wall)], 4)
         )
     ],
+)
+
+
+Way = tuple[str, tuple[JointPath, ...], int, int]
+"""Name, paths, length of a straight one in px, and how many Fig. 17 draws."""
+
+
+@dataclass(frozen=True, eq=False)
+class Paths:
+    """The shortest paths along the joints of a wall either way, the shortest first."""
+
+    name: str
+    labels: Labels
+    ways: tuple[Way, Way]
+
+    @classmethod
+    def of(cls, name: str, labels: Labels, wall_width_px: float | None = None) -> "Paths":
+        """Find the paths of a label image."""
+        framed = frame_wall(labels, wall_width_px).labels
+        joint = joint_mask(framed)
+        rows, cols = joint.shape
+        across = "horizontal", joint_paths.horizontal_paths(joint), cols - 1, 3
+        upright = "vertical", joint_paths.vertical_paths(joint), rows - 1, 7
+        return cls(name, framed, (across, upright))
+
+
+def shortest_paths(context: Context, wall: Target = PR) -> tuple[Paths, ...]:
+    """Find the shortest paths; of published stones the image is the masons' wall."""
+    built = context.wall(wall.run(context.seed))
+    found = [Paths.of(f"planned {wall.name}", built.labels, built.site.width_px)]
+    if context.data is not None and wall.source.kind == "published":
+        traced = wall.source.labels(context.data)
+        found.append(Paths.of(f"the masons' {wall.name}", reduce_labels(traced, wall.scale)))
+    return tuple(found)
+
+
+def _figures(walls: Sequence[Paths]) -> Rows:
+    for paths in walls:
+        factors = (
+            rounded(mean_excess([path.length_px for path in found[:SHORTEST]], straight))
+            for _, found, straight, _ in paths.ways
+        )
+        yield paths.name, *(straight for _, _, straight, _ in paths.ways), *factors
+
+
+def _paths(walls: Sequence[Paths]) -> Rows:
+    for paths in walls:
+        for way, found, straight, _ in paths.ways:
+            for rank, path in enumerate(found, 1):
+                start = path.pixels[0] - (PAD_TOP, PAD_LEFT)
+                at = int(start[0] if way == "horizontal" else start[1])
+                excess = rounded(mean_excess([path.length_px], straight))
+                yield paths.name, way, rank, at, round(path.length_px, 4), excess
+
+
+def _picture(paths: Paths, number: int) -> ItemFigure:
+    figure = Figure(figsize=(6.4, 4.4), layout="constrained")
+    for ax, (way, found, _, count) in zip(figure.subplots(2, 1), paths.ways, strict=True):
+        pad = np.array([PAD_TOP, PAD_LEFT])
+        plot_joint_paths(paths.labels, [path.pixels - pad for path in found[:count]], ax)
+        lengths = ", ".join(f"{path.length_px:.0f}" for path in found[:count])
+        ax.set_title(f"{paths.name}: {way} paths of {lengths} px", fontsize=8, loc="left")
+    counts = {way: len(found[:count]) for way, found, _, count in paths.ways}
+    return ItemFigure("fig17-masons" if number else "fig17", figure, {"name": paths.name, **counts})
+
+
+PATHS = PaperItem(
+    study=shortest_paths,
+    tables={"figures": _figures, "paths": _paths},
+    pictures=lambda found: [_picture(paths, number) for number, paths in enumerate(found)],
 )

@@ -26,7 +26,8 @@ from drystone.statics.result import LateralResistance
 from drystone_lab.pictures.walls import plot_walls, sheet_of, stones_panel, wall_panel
 from drystone_lab.reproduce.cells import rounded
 from drystone_lab.reproduce.construction import Construction, construction
-from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem, Rows
+from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem
+from drystone_lab.table import Rows
 from drystone_lab.walls import PR, Target
 
 ROWS: Mapping[str, tuple[str, int, tuple[str, ...]]] = {

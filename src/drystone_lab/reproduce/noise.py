@@ -19,9 +19,10 @@ from drystone_lab.pictures import charts
 from drystone_lab.pictures.walls import plot_walls
 from drystone_lab.reproduce import study
 from drystone_lab.reproduce.cells import LEVEL, METRICS, figures_of, rounded, trend
-from drystone_lab.reproduce.item import Claimed, ItemFigure, PaperItem, Rows
+from drystone_lab.reproduce.item import Claimed, ItemFigure, PaperItem
 from drystone_lab.reproduce.study import Study, StudyWalls, Trials, each_wall, medians, of_each
 from drystone_lab.runs.outcome import RunOutcome
+from drystone_lab.table import Rows
 from drystone_lab.walls import NOISES, NOISY, TWO_SIDED, Target, coarser, generated_noise
 
 GAP_SOURCE_PX = 20 / 3

@@ -13,9 +13,10 @@ from drystone_lab.pictures.charts import plot_two_figures
 from drystone_lab.pictures.walls import plot_walls
 from drystone_lab.reproduce import study
 from drystone_lab.reproduce.cells import LEVEL, figures_of, metric_cells, placed_of
-from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem, Rows
+from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem
 from drystone_lab.reproduce.study import Study, StudyWalls, Trials, built, each_wall, medians
 from drystone_lab.runs.spec import Changes, generated, published
+from drystone_lab.table import Rows
 from drystone_lab.walls import TWO_SIDED, Target, coarser
 
 WALL_PX, COUNT, SCALE = 420, 100, 0.5

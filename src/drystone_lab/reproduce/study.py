@@ -9,10 +9,10 @@ from drystone_lab.paired import median_of
 from drystone_lab.pictures.charts import group_panels
 from drystone_lab.pictures.walls import TitledWall, plot_walls
 from drystone_lab.reproduce import cells
-from drystone_lab.reproduce.item import Context, ItemFigure, Rows
+from drystone_lab.reproduce.item import Context, ItemFigure
 from drystone_lab.runs.outcome import RunOutcome
 from drystone_lab.runs.spec import Changes, RunSpec
-from drystone_lab.table import Cell
+from drystone_lab.table import Cell, Rows
 from drystone_lab.walls import Target
 
 ONE_WAY: Mapping[str, Changes] = {"variant": ()}

@@ -71,8 +71,7 @@ def execute(spec: RunSpec, data: Path | None, stones: StoneSet | None = None) ->
     stones = spec.source.stones(data) if stones is None else stones
     result = plan_wall(
         stones,
-        spec.width or float(stones.source.width_px),
-        spec.height or float(stones.source.height_px),
+        *spec.size(stones),
         seed=spec.seed,
         method=spec.method,
         settings=spec.settings(),

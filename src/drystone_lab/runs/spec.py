@@ -166,6 +166,11 @@ class RunSpec:
     changes: Changes = ()
     seed: int = 0
 
+    def size(self, stones: StoneSet) -> tuple[float, float]:
+        """Return the width and height of the wall, source px."""
+        source = stones.source
+        return self.width or float(source.width_px), self.height or float(source.height_px)
+
     def settings(self) -> PlannerSettings:
         """Return the settings of the planner."""
         return method_settings(self.method).updated(nested(self.changes))

@@ -1,33 +1,39 @@
-"""Fig. 6 and Fig. 7: what the indices measure, on real stones (§3.5)."""
+"""Figs. 6 and 7: what indices measure (§3.5); Fig. 8: where a stone may be put (§3.6)."""
 
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
-from matplotlib.patches import Rectangle
+from matplotlib.patches import Patch, Rectangle
 from matplotlib.patheffects import withStroke
+from numpy.typing import NDArray
+from scipy import ndimage, signal
 
 from drystone.drawing.canvas import draw_block
 from drystone.drawing.outlines import label_regions
 from drystone.drawing.palette import OUTLINE_COLOUR
 from drystone.indices import peak_columns, swept_pixels
+from drystone.kernels.lowering import Positions
 from drystone.kernels.raster import Mask
+from drystone.kernels.spots import Eq12, eq12_merits
 from drystone.model.landscape import Box
+from drystone.model.pose import PosedStone
 from drystone.model.wall import Labels
 from drystone.stabilise.stabilise import falls_to
 from drystone_lab.pictures.walls import plot_landscape
 from drystone_lab.reproduce.cells import rounded
 from drystone_lab.reproduce.construction import Moment, RestingPlace, amid_course, construction
-from drystone_lab.reproduce.item import Context, ItemFigure, PaperItem, Rows
-from drystone_lab.table import Cell
+from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem
+from drystone_lab.table import Cell, Rows
 from drystone_lab.walls import PR, Target
 
 NAMES = ("SF", "LFR", "GDS", "NHR", "IWR", "IS")
 
-BUILT = "#e4e0d8"
+BUILT, LAID = "#e4e0d8", "#dedad2"
 STONE, NEIGHBOUR, BELOW, RAYS, BEGUN = "#d55e00", "#009e73", "#56b4e9", "#f0e442", "#0072b2"
 """Okabe and Ito's colours, apart for colour-blind readers; roles as in Fig. 7."""
 
@@ -67,7 +73,8 @@ def plot_indices(place: RestingPlace, names: Collection[str], ax: Axes, title: s
     if "IS" in names and (peaks := peak_columns(place.posed)) is not None:
         x = [place.col + column + 0.5 for column in peaks]
         y = [height - place.row - int(place.posed.top[column]) for column in peaks]
-        _draw_line(ax, x, y, "slope", marker="o", markersize=3.5, linewidth=1.2, zorder=5)
+        ax.plot(x, y, color=OUTLINE_COLOUR, gid="slope", marker="o", markersize=3.5, linewidth=1.2,
+                zorder=5)  # fmt: skip
     if {"NHR", "IWR"} <= {*names}:
         _name_stones(ax, place)
     ax.set_title(title, fontsize=7, loc="left", pad=2)
@@ -77,12 +84,6 @@ def _id(place: RestingPlace, box: Box) -> int:
     """Return the id of the placed stone that has a box."""
     moment = place.moment
     return moment.wall.placements[moment.landscape.boxes.index(box)].stone_id
-
-
-def _draw_line(
-    ax: Axes, x: Sequence[float], y: Sequence[float], gid: str | None, **look: object
-) -> None:
-    ax.plot(x, y, color=OUTLINE_COLOUR, gid=gid, **look)  # type: ignore[arg-type]
 
 
 def _name_stones(ax: Axes, place: RestingPlace) -> None:
@@ -104,27 +105,26 @@ def _draw_tops(ax: Axes, stone: Box, beside: Box) -> None:
     """Draw the heights of both tops, and how far they are apart."""
     ends = (min(stone.left, beside.left), max(stone.right, beside.right))
     for top in (stone.top, beside.top):
-        _draw_line(ax, ends, (top, top), "top", linewidth=0.8, linestyle=(0, (4, 2)), zorder=4)
+        ax.plot(ends, (top, top), color=OUTLINE_COLOUR, gid="top", linewidth=0.8,
+                linestyle=(0, (4, 2)), zorder=4)  # fmt: skip
     middle = (ends[0] + ends[1]) / 2
-    _draw_line(ax, (middle, middle), (stone.top, beside.top), "difference", linewidth=2.0,
-               zorder=5, solid_capstyle="butt")  # fmt: skip
+    ax.plot((middle, middle), (stone.top, beside.top), color=OUTLINE_COLOUR, gid="difference",
+            linewidth=2.0, zorder=5, solid_capstyle="butt")  # fmt: skip
 
 
 def _draw_joints(ax: Axes, place: RestingPlace) -> None:
     """Draw how far the ends of the stone are from the joints below."""
     below1, below2 = place.below
     stone = place.box
-    pairs = []
-    if below1 is not None:
-        pairs.append((stone.left, below1.right, below1.top))
-    if below2 is not None:
-        pairs.append((stone.right, below2.left, below2.top))
-    for x_end, x_joint, y_joint in pairs:
-        _draw_line(ax, (x_end, x_joint), (stone.bottom, stone.bottom), "offset", linewidth=1.8,
-                   zorder=5, solid_capstyle="butt")  # fmt: skip
-        _draw_line(ax, (x_joint, x_joint), (stone.bottom, y_joint), None, linewidth=0.6, zorder=5)
-        _draw_line(ax, (x_joint,), (y_joint,), "joint", marker="o", markersize=3, zorder=5,
-                   linestyle="")  # fmt: skip
+    joints = [(stone.left, below1.right, below1.top)] if below1 is not None else []
+    joints += [(stone.right, below2.left, below2.top)] if below2 is not None else []
+    for x_end, x_joint, y_joint in joints:
+        ax.plot((x_end, x_joint), (stone.bottom, stone.bottom), color=OUTLINE_COLOUR, gid="offset",
+                linewidth=1.8, zorder=5, solid_capstyle="butt")  # fmt: skip
+        ax.plot((x_joint, x_joint), (stone.bottom, y_joint), color=OUTLINE_COLOUR, linewidth=0.6,
+                zorder=5)  # fmt: skip
+        ax.plot((x_joint,), (y_joint,), color=OUTLINE_COLOUR, gid="joint", marker="o",
+                markersize=3, zorder=5, linestyle="")  # fmt: skip
 
 
 def recounted(place: RestingPlace, name: str) -> float | None:
@@ -277,4 +277,166 @@ INDICES = PaperItem(
         "fig7": lambda found: [(name, *_cells(found.place, name)) for name in found.place.values],
     },
     pictures=_pictures,
+)
+
+
+OPACITY = 0.85
+
+
+def plot_position_layers(
+    ax: Axes, labels: Labels, posed: PosedStone, layers: Sequence[tuple[str, str, Mask]]
+) -> None:
+    """Draw sets of positions of a stone as areas; a position is where its centroid is.
+
+    A layer is label, colour, and positions by row and column of the mask's top-left corner.
+    """
+    plot_landscape(ax, labels, LAID, edgecolor=OUTLINE_COLOUR, linewidth=0.3)
+    height = labels.shape[0]
+    x, y = posed.anchor
+    for label, colour, positions in layers:
+        rows, cols = positions.shape
+        image = np.zeros((rows, cols, 4))
+        image[positions] = to_rgba(colour, OPACITY)
+        top = height - posed.height_px + y + 0.5
+        ax.imshow(image, extent=(x - 0.5, x + cols - 0.5, top - rows, top), zorder=3,
+                  interpolation="nearest", gid=f"layer-{label}")  # fmt: skip
+    handles = [
+        Patch(facecolor=to_rgba(colour, OPACITY), label=label) for label, colour, _ in layers
+    ]
+    ax.legend(handles=handles, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=len(layers),
+              fontsize=7, frameon=False, borderaxespad=0.1, handlelength=1.0)  # fmt: skip
+
+
+def plot_position_values(
+    ax: Axes, place: RestingPlace, positions: Positions, values: NDArray[np.floating]
+) -> None:
+    """Draw what positions of a stone are worth, and the stone where it was put.
+
+    `positions` (n, 2) are rows and columns of the mask's top-left corner.
+    """
+    labels, posed = place.moment.wall.labels, place.posed
+    plot_landscape(ax, labels, LAID, edgecolor=OUTLINE_COLOUR, linewidth=0.3)
+    (region,) = label_regions(place.pixels.astype(np.uint32))
+    draw_block(ax, region.loops, "chosen", fill="#ffffff", linewidth=1.4, zorder=2)
+    rows, cols = np.vstack([positions, [place.row, place.col]]).T
+    x = cols + posed.anchor[0]
+    y = labels.shape[0] - rows - posed.height_px + posed.anchor[1]
+    drawn = ax.scatter(x[:-1], y[:-1], c=values, cmap="cividis", s=4, marker="s", linewidths=0,
+                       zorder=3, gid="values")  # fmt: skip
+    ax.plot(x[-1], y[-1], "x", color=FREE, markersize=7, markeredgewidth=2, zorder=4, gid="best")
+    bar = ax.figure.colorbar(drawn, ax=ax, fraction=0.02, pad=0.01)
+    bar.set_label("LFR + H(GDS) - $x_c$/w", size=7)
+    bar.ax.tick_params(labelsize=6, length=2)
+
+
+FREE, FLOATING, TOUCHING = "#d55e00", "#0072b2", "#cc79a7"
+"""The paper's red, blue and pink in Okabe and Ito's colours, apart for colour-blind readers."""
+
+
+def position_maps(occupied: Mask, mask: Mask) -> tuple[Mask, Mask]:
+    """Return at which positions of a stone nothing overlaps, and which of them float.
+
+    By row and column of its mask's top-left corner.  As the paper does it, by convolution: with the
+    landscape, and with the landscape dilated by one pixel, bounds and all.  The landscape (L_0 of
+    the paper) has bounds on all four sides (Fig. 4b).
+    """
+    dilated = ndimage.binary_dilation(occupied, border_value=1)
+    overlaps = (
+        signal.correlate(picture.astype(float), mask.astype(float), "valid", "fft")
+        for picture in (occupied, dilated)
+    )
+    free, floating = (np.rint(pixels) == 0 for pixels in overlaps)
+    return free, floating
+
+
+@dataclass(frozen=True, eq=False)
+class PositionTrial:
+    """A stone on a landscape, where the rule of placement puts it."""
+
+    wall: Target
+    place: RestingPlace
+
+    @cached_property
+    def maps(self) -> tuple[Mask, Mask, Mask]:
+        """The paper's positions: free, floating, and touching, the difference of both."""
+        free, floating = position_maps(self.place.moment.wall.occupied, self.place.posed.mask)
+        return free, floating, free & ~floating
+
+    @property
+    def built(self) -> int:
+        """Stones of the landscape."""
+        return len(self.place.moment.wall.placements)
+
+    @cached_property
+    def resting(self) -> Positions:
+        """Where it rests on something from below."""
+        return self.place.moment.positions(self.place.posed)
+
+    def values(self, positions: Positions) -> NDArray[np.float64]:
+        """Return Eq. 12 at some positions."""
+        moment, posed = self.place.moment, self.place.posed
+        landscape, beta = moment.landscape, moment.settings.placement.beta
+        eq12 = Eq12(landscape.built_height_px, posed.anchor[0], beta)
+        return eq12_merits(positions, posed.silhouette, landscape.rays, eq12)
+
+
+def trial(context: Context, wall: Target = PR) -> PositionTrial:
+    """Find the positions of a stone of the run on what was built before it."""
+    place = amid_course(construction(context, wall))
+    found = place.moment.trial(place.posed.stone.id)
+    if found is None:
+        raise RuntimeError("a stone of the run fits nowhere where it was placed")
+    return PositionTrial(wall, RestingPlace(place.moment, *found))
+
+
+def _positions(found: PositionTrial) -> Rows:
+    place, (free, floating, touching) = found.place, found.maps
+    yield "all inside the wall", free.size, None, None, None
+    yield "no overlap (red)", int(free.sum()), None, None, None
+    yield "floating (blue)", int(floating.sum()), None, None, None
+    for name, positions in (
+        ("touching: the difference (pink)", np.argwhere(touching).astype(np.int64)),
+        ("resting on something from below", found.resting),
+        ("chosen", np.array([(place.row, place.col)], np.int64)),
+    ):
+        # The place of the largest value; of equal ones the lower, then the left one.
+        values = found.values(positions)
+        best = np.lexsort((positions[:, 1], -positions[:, 0], -np.round(values, 12)))[0]
+        row, col = positions[best].tolist()
+        bottom = place.moment.landscape.height_px - row - place.posed.height_px
+        yield name, len(positions), col, bottom, round(float(values[best]), 4)
+
+
+def _drawn(found: PositionTrial) -> ItemFigure:
+    place, resting, (free, floating, touching) = found.place, found.resting, found.maps
+    figure = Figure(figsize=(7.2, 7.05), layout="constrained")
+    first, second, third = figure.subplots(3, 1)
+    bearing = np.zeros_like(free)
+    bearing[resting[:, 0], resting[:, 1]] = True
+    apart = (
+        ("no overlap", FREE, free),
+        ("floating: no overlap when dilated", FLOATING, floating),
+    )
+    near = (
+        ("touching: the difference", TOUCHING, touching),
+        ("resting on something from below", "#000000", bearing),
+    )
+    for ax, layers in ((first, apart), (second, near)):
+        plot_position_layers(ax, place.moment.wall.labels, place.posed, layers)
+    plot_position_values(third, place, resting, found.values(resting))
+    return ItemFigure("fig8", figure)
+
+
+def _claims(found: PositionTrial) -> Iterator[Claimed]:
+    resting, (*_, touching) = found.resting, found.maps
+    inside, count = int(touching[resting[:, 0], resting[:, 1]].sum()), int(touching.sum())
+    values = {"inside": inside, "resting": len(resting), "more": count - inside}
+    yield Claimed("difference", inside == len(resting) == count, values)
+
+
+POSITIONS = PaperItem(
+    study=trial,
+    claims=_claims,
+    tables={"positions": _positions},
+    pictures=lambda found: [_drawn(found)],
 )
