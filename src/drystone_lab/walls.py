@@ -26,6 +26,11 @@ class Target:
     instead: "Callable[[], Target] | None" = None  # Built where its stones are not at hand
 
     @property
+    def noise(self) -> str:
+        """Noise of its stones for people."""
+        return f"{self.number} %{' gen.' * self.stand_in}"
+
+    @property
     def said(self) -> str:
         """Whose stones they are, for people."""
         if not self.stand_in:
@@ -160,6 +165,10 @@ TWO_SIDED: Changes = (("two_sided", True),)
 def coarser(wall: Target, scale: float) -> Target:
     """Return a wall at a working scale that is not finer than this, for quick versions."""
     return replace(wall, scale=min(scale, wall.scale))
+
+
+COARSE = (coarser(R, 0.1), coarser(PR, 0.25))
+"""For quick versions: the many stones of IR take longest."""
 
 
 def chosen(walls: Sequence[Target], only: Sequence[str], suite: str = "") -> tuple[Target, ...]:

@@ -24,10 +24,8 @@ from drystone_lab.pictures.charts import group_panels
 from drystone_lab.pictures.walls import Panel, sheet_of, wall_aspect
 from drystone_lab.reproduce import cells
 from drystone_lab.reproduce.cells import rounded
-from drystone_lab.reproduce.item import Claimed, ItemFigure, PaperItem
-from drystone_lab.reproduce.study import Study, StudyWalls, Trials, sheet
+from drystone_lab.reproduce.item import Claimed, ItemFigure, PaperItem, StudyWalls, Trials
 from drystone_lab.table import Rows
-from drystone_lab.walls import IR, LIU_5, PR
 
 ALPHAS: Mapping[str, float] = {"left": 0.79, "right": 0.71}
 """Load multipliers of §5.1, tilting towards that side."""
@@ -87,7 +85,7 @@ def _rules(case: BaseCase) -> Rows:
 
 def _pictures(case: BaseCase) -> Iterator[ItemFigure]:
     title = f"{case.built.name}, seed {case.built.seeds[0]}"
-    yield sheet(case.built, "fig14", 1, lambda _: title)
+    yield case.built.sheet("fig14", 1, title)
     for rule, result in case.mechanisms:
         if result.mechanism is not None:
             falls = result.status is LimitStatus.UNSTABLE
@@ -106,7 +104,7 @@ def _pictures(case: BaseCase) -> Iterator[ItemFigure]:
 
 
 BASE_CASE = PaperItem(
-    study=Study(walls=(PR,), quick_seeds=5, then=base_case),
+    then=base_case,
     tables={"fig14": _summary, "fig15": _rules},
     pictures=_pictures,
 )
@@ -206,7 +204,6 @@ def _box(wall: Wall, wedge: Wedge) -> ZoomBox:
 
 
 WEDGES = PaperItem(
-    study=Study(walls=(IR, LIU_5), seeds=1, quick_seeds=1),
     claims=_wedges_claims,
     tables={"fig19": _wedges},
     pictures=lambda found: [_wedges_picture(one, found.wall(one)) for one in found],

@@ -1,8 +1,9 @@
-"""A table or figure of the paper that can be made again."""
+"""A table or figure of the paper that can be made again, and the walls that most are made of."""
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from pkgutil import resolve_name
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
@@ -11,15 +12,19 @@ from matplotlib.figure import Figure, SubFigure
 from drystone.model.wall import Wall
 from drystone.selection.policies.table1 import MARKS
 from drystone_lab import timed_walls
-from drystone_lab.reproduce.cells import COLUMNS, METRICS, WINS
+from drystone_lab.paired import median_of
+from drystone_lab.pictures.charts import group_panels
+from drystone_lab.pictures.walls import TitledWall, plot_walls
+from drystone_lab.reproduce import cells
 from drystone_lab.runs.outcome import Runner, RunOutcome
-from drystone_lab.runs.spec import RunSpec
-from drystone_lab.table import Rows, Table, worded
+from drystone_lab.runs.spec import Changes, RunSpec
+from drystone_lab.table import Cell, Rows, Table, worded
+from drystone_lab.walls import Target, coarser
 
 COLUMN_SETS: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {
-        "<metrics>": METRICS, "<summary>": COLUMNS, "<wins>": WINS, "<policies>": tuple(MARKS),
-        "<parts>": timed_walls.COLUMNS,
+        "<metrics>": cells.METRICS, "<summary>": cells.COLUMNS, "<wins>": cells.WINS,
+        "<policies>": tuple(MARKS), "<parts>": timed_walls.COLUMNS,
     }
 )  # fmt: skip
 """Columns that several tables have, by their name in ``paper.toml``."""
@@ -87,15 +92,218 @@ class Claimed(NamedTuple):
 
 
 @dataclass(frozen=True, kw_only=True)
+class Study:
+    """What is built."""
+
+    walls: tuple[Target, ...]  # The sets
+    ways: Mapping[str, Changes]  # Settings that replace the paper's, by name of the way
+    seeds: int = 20  # seeds, quick_seeds: How many, the same for all; in the quick version
+    quick_seeds: int = 3
+    quick_walls: tuple[Target, ...] = ()  # Of the quick version; empty for the same
+
+    @classmethod
+    def worded(
+        cls,
+        *,
+        walls: Sequence[str],
+        ways: Mapping[str, Mapping[str, Any]] = MappingProxyType({"variant": {}}),
+        quick_walls: Sequence[str] = (),
+        **seeds: int,
+    ) -> "Study":
+        """Return the study of words in ``paper.toml``.
+
+        Walls are constants of the lab, coarser ones with their scale.
+
+        >>> [wall.scale for wall in Study.worded(walls=["walls.R", "walls.MASONS at 0.25"]).walls]
+        [0.2, 0.2, 0.25, 0.25]
+        """
+        changes = {name: tuple(values.items()) for name, values in ways.items()}
+        full, quick = (tuple(_targets(names)) for names in (walls, quick_walls))
+        return cls(walls=full, ways=changes, quick_walls=quick, **seeds)
+
+    def __call__(self, context: Context) -> "StudyWalls":
+        """Build the walls."""
+        walls = (context.quick and self.quick_walls) or self.walls
+        walls = tuple(wall.here(context.data) for wall in walls)
+        count = self.quick_seeds if context.quick else self.seeds
+        seeds = range(context.seed, context.seed + count)
+        return built(context, walls, self.ways, seeds)
+
+
+def _targets(names: Sequence[str]) -> Iterator[Target]:
+    for each in names:
+        name, _, scale = each.partition(" at ")
+        found = resolve_name(f"drystone_lab.{name}")
+        for wall in (found,) if isinstance(found, Target) else found:
+            yield coarser(wall, float(scale)) if scale else wall
+
+
+@dataclass(frozen=True, eq=False)
+class Trials:
+    """Walls of one set by one way, which differ in their seeds: runs and what came out of them."""
+
+    wall: Target
+    way: str
+    specs: tuple[RunSpec, ...]
+    outcomes: tuple[RunOutcome, ...]
+
+    def values(self, figure: str) -> tuple[float | None, ...]:
+        """Return a figure of all of them; None where a wall has none.
+
+        The share of wedges in the wall is one too, in percent.
+        """
+        if figure == "wedge_share":
+            whole = self.wall.width * self.wall.height
+            areas = self.values("wedge_area")
+            return tuple(None if area is None else 100 * area / whole for area in areas)
+        found = (outcome.figures[figure] for outcome in self.outcomes)
+        return tuple(None if value is None else float(value) for value in found)
+
+    def median(self, figure: str) -> float | None:
+        """Return the median of a figure over the walls that have it; None when none has."""
+        return median_of(self.values(figure))
+
+    @property
+    def whole(self) -> int:
+        """How many walls have all stones."""
+        return sum(o.figures["placed"] == o.figures["stones"] for o in self.outcomes)
+
+    def cells(self, name: str) -> tuple[Cell, ...]:
+        """Return what is told of all walls: of the set, medians of figures, or their summary."""
+        if name == "<summary>":
+            return cells.summary(self.outcomes)
+        if name in ("way", "whole"):
+            return (getattr(self, name),)
+        if hasattr(self.wall, name):
+            return (getattr(self.wall, name),)
+        return (cells.rounded(self.median(name)),)
+
+    def cells_of(self, which: int, name: str) -> tuple[Cell, ...]:
+        """Return what is told of one wall: its seed, a figure, its metrics, or that of the set."""
+        if name == "<metrics>":
+            return cells.metric_cells(self.outcomes[which])
+        own = {"seed": self.specs[which].seed, **self.outcomes[which].figures}
+        return (own[name],) if name in own else self.cells(name)
+
+    @property
+    def middle(self) -> int:
+        """Place of the wall in the middle by filling, the lower one of two."""
+        filled = [value or 0.0 for value in self.values("F_SF")]
+        return sorted(range(len(filled)), key=filled.__getitem__)[(len(filled) - 1) // 2]
+
+
+@dataclass(frozen=True, eq=False)
+class StudyWalls:
+    """The walls of a study: of the first set by every way, then of the next."""
+
+    context: Context
+    all: tuple[Trials, ...]
+
+    def __iter__(self) -> Iterator[Trials]:
+        return iter(self.all)
+
+    @property
+    def seeds(self) -> tuple[int, ...]:
+        """Of every set and way."""
+        return tuple(spec.seed for spec in self.all[0].specs)
+
+    @property
+    def by_wall(self) -> tuple["StudyWalls", ...]:
+        """The walls of each set."""
+        walls = dict.fromkeys(trials.wall for trials in self.all)
+        return tuple(
+            StudyWalls(self.context, tuple(one for one in self.all if one.wall == wall))
+            for wall in walls
+        )
+
+    @property
+    def name(self) -> str:
+        """Of the first set."""
+        return self.all[0].wall.name
+
+    @property
+    def names(self) -> str:
+        """Of all sets."""
+        return ", ".join(dict.fromkeys(one.wall.name for one in self.all))
+
+    def of(self, way: str) -> list[Trials]:
+        """Return the trials of one way, in the order of the sets."""
+        return [each for each in self.all if each.way == way]
+
+    def values(self, way: str, figure: str) -> list[float | None]:
+        """Return a figure of all walls of one way, in the order of sets and seeds."""
+        return [value for trials in self.of(way) for value in trials.values(figure)]
+
+    def wall(self, trials: Trials, which: int = 0) -> Wall:
+        """Return one of the walls, built again."""
+        return trials.outcomes[which].wall(trials.specs[which], self.context.data)
+
+    def drawn(self, trials: Trials, title: str, which: int = 0) -> TitledWall:
+        """Return one of the walls as a panel, stones coloured by cluster."""
+        return title, self.wall(trials, which), trials.outcomes[which].clusters
+
+    def titled(self, trials: Trials, title: str, which: int = 0) -> TitledWall:
+        """Return one of the walls as a panel, with its figures in the title."""
+        figures = trials.outcomes[which].figures
+        placed = f"{figures['placed']} of {figures['stones']} stones"
+        return self.drawn(trials, f"{title}: {placed}\n{cells.in_words(figures)}", which)
+
+    def strips(self, name: str, figures: Sequence[str], label: str) -> ItemFigure:
+        """Draw a point a wall: a panel a figure, a group a set and way, called as a label says."""
+        panels = {
+            figure: {label.format(one): one.values(figure) for one in self} for figure in figures
+        }
+        return ItemFigure(name, group_panels(panels), self)
+
+    def sheet(self, name: str, columns: int, label: str) -> ItemFigure:
+        """Draw the wall of the first seed of every set and way."""
+        walls = [self.titled(one, label.format(one)) for one in self]
+        return ItemFigure(name, plot_walls(walls, columns))
+
+
+def built(
+    context: Context, walls: Sequence[Target], ways: Mapping[str, Changes], seeds: Sequence[int]
+) -> StudyWalls:
+    """Build walls of every set, by every way, from every seed."""
+    asked = [
+        (wall, way, tuple(wall.run(seed, *changes) for seed in seeds))
+        for wall in walls
+        for way, changes in ways.items()
+    ]
+    outcomes = iter(context.run([spec for *_, specs in asked for spec in specs]))
+    trials = [Trials(*one, tuple(next(outcomes) for _ in one[-1])) for one in asked]
+    return StudyWalls(context, tuple(trials))
+
+
+def rows_of(words: Mapping[str, Any], found: StudyWalls) -> Rows:
+    """Return the rows that words ask for.
+
+    `medians` and `walls` name the cells of a row a set and way, or a wall; `pairs` one way and
+    those against which it is set, by pairs of one set and seed.
+    """
+    for one in found:
+        if "medians" in words:
+            yield tuple(cell for name in words["medians"] for cell in one.cells(name))
+        for k in range(len(one.specs) if "walls" in words else 0):
+            yield tuple(cell for name in words["walls"] for cell in one.cells_of(k, name))
+    way, *others = words.get("pairs", ("",))
+    for other in others:
+        for figure in cells.METRICS:
+            first, second = (found.values(name, figure) for name in (way, other))
+            yield other, *cells.wins(first, second, figure)
+
+
+@dataclass(frozen=True, kw_only=True)
 class PaperItem:
     """A table or figure of the paper: data, and what is read off it."""
 
-    # Does what the item is about: builds walls (:class:`~drystone_lab.reproduce.study.Study`) or
-    # times them.  All others take what it returns
-    study: Callable[[Context], Any]
+    # Does what the item is about: builds walls, or times them; a :class:`Study` may be worded
+    study: Callable[[Context], Any] = lambda context: context
+    then: Callable[[Any], Any] = lambda built: built  # What is made of that; all below take it
     # Compares what was found with claims of the paper; they are a table too
     claims: Callable[[Any], Iterable[Claimed]] = lambda _: ()
-    # tables, times: By the name of the CSV file; times differ from machine to machine
+    # tables, times: By the name of the CSV file; times differ from machine to machine.  Other
+    # tables are rows of the study, and some pictures its walls, as words say
     tables: Mapping[str, Callable[[Any], Rows]] = field(default_factory=dict)
     times: Mapping[str, Callable[[Any], Rows]] = field(default_factory=dict)
     pictures: Callable[[Any], Iterable[ItemFigure]] = lambda _: ()  # Draws
@@ -106,17 +314,24 @@ class PaperItem:
         """Published stones without which it cannot be made, as paths in their folder."""
         return tuple(self.words.get("needs", ()))
 
+    def worded(self, words: Mapping[str, Any]) -> "PaperItem":
+        """Return it with its words, and with the study that they name."""
+        study = Study.worded(**words["study"]) if "study" in words else self.study
+        return replace(self, words=words, study=study)
+
     def make(self, context: Context) -> Output:
         """Do the study, and read everything off it."""
         context = replace(context, asked=[])
-        found = self.study(context)
-        tables, times = (
-            [
-                (name, worded(self.words[kind][name], rows(found), found, columns=COLUMN_SETS))
-                for name, rows in of.items()
-            ]
-            for kind, of in (("tables", self.tables), ("times", self.times))
-        )
+        built = self.study(context)
+        found = self.then(built)
+        tables = []
+        for name, words in self.words.get("tables", {}).items():
+            rows = self.tables[name](found) if name in self.tables else rows_of(words, built)
+            tables.append((name, worded(words, rows, found, columns=COLUMN_SETS)))
+        times = [
+            (name, worded(self.words["times"][name], rows(found), found, columns=COLUMN_SETS))
+            for name, rows in self.times.items()
+        ]
         texts = self.words.get("claims", {})
         checked = [
             (*(text.format(**one.values) for text in texts[one.key]), one.holds)
@@ -130,8 +345,12 @@ class PaperItem:
         elif checked:
             tables.append(("claims", Table("The paper's claims", CLAIMS, tuple(checked))))
             said = sentences(checked)
+        drawn = [
+            (built.strips if "figures" in words else built.sheet)(name, **words)
+            for name, words in self.words.get("pictures", {}).items()
+        ]
         pictures = []
-        for one in self.pictures(found):
+        for one in (*drawn, *self.pictures(found)):
             captions = self.words["captions"]
             key = max((k for k in captions if one.name.startswith(k)), key=len)
             about = captions[key].format(found if one.about is None else one.about)
@@ -144,6 +363,9 @@ class PaperItem:
             runs=tuple(dict.fromkeys(context.asked)),
         )
 
+
+PLAIN = PaperItem()
+"""All of it is in its words."""
 
 CLAIMS = ("the paper", "here", "agrees")
 

@@ -2,7 +2,6 @@
 
 import tomllib
 from collections.abc import Mapping
-from dataclasses import replace
 from pathlib import Path
 from pkgutil import resolve_name
 from types import MappingProxyType
@@ -44,5 +43,6 @@ def item_names(asked: str) -> tuple[str, ...]:
 
 def item_named(name: str) -> "PaperItem":
     """Return one of :data:`ITEMS`."""
-    item: PaperItem = resolve_name(f"drystone_lab.reproduce.{ITEMS[name]['made']}")
-    return replace(item, words=ITEMS[name])
+    made = ITEMS[name].get("made", "item.PLAIN")
+    item: PaperItem = resolve_name(f"drystone_lab.reproduce.{made}")
+    return item.worded(ITEMS[name])

@@ -27,11 +27,10 @@ from drystone.statics.limit import lateral_resistance
 from drystone_lab.pictures import walls as sheets
 from drystone_lab.reproduce import cells
 from drystone_lab.reproduce.cells import METRICS, rounded
-from drystone_lab.reproduce.item import Context, ItemFigure, PaperItem
-from drystone_lab.reproduce.study import Study, StudyWalls, Trials, medians, of_each
+from drystone_lab.reproduce.item import Context, ItemFigure, PaperItem, StudyWalls, Trials
 from drystone_lab.runs.outcome import RunOutcome
 from drystone_lab.table import Cell, Rows
-from drystone_lab.walls import FIVE, MASONS, PR, Target
+from drystone_lab.walls import MASONS, PR, Target
 
 MOVES = ((1, -1), (1, 0), (0, -1), (1, 1), (-1, -1), (-1, 0), (0, 1), (-1, 1))
 """Steps of a stone, px down and to the right; the first of equally good ones is taken."""
@@ -335,13 +334,12 @@ def _five_panels(wall: FiveWall) -> list[sheets.Panel]:
 
 
 TABLE2 = PaperItem(
-    study=Study(walls=FIVE, quick_seeds=2, then=five_walls),
+    then=five_walls,
     tables={
         # Rows of each wall, our figures and the paper's beside each other
         "table2": lambda walls: [
             row for wall in walls for row in (*_references(wall), *_ours(wall))
         ],
-        "table2_seeds": of_each(medians("number", "name")),
     },
     pictures=lambda walls: [
         ItemFigure(

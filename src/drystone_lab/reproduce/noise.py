@@ -17,13 +17,11 @@ from drystone.model.wall import Labels
 from drystone.statics.limit import lateral_resistance
 from drystone_lab.pictures import charts
 from drystone_lab.pictures.walls import plot_walls
-from drystone_lab.reproduce import study
 from drystone_lab.reproduce.cells import LEVEL, METRICS, figures_of, rounded, trend
-from drystone_lab.reproduce.item import Claimed, ItemFigure, PaperItem
-from drystone_lab.reproduce.study import Study, StudyWalls, Trials, each_wall, medians, of_each
+from drystone_lab.reproduce.item import Claimed, ItemFigure, PaperItem, StudyWalls, Trials, rows_of
 from drystone_lab.runs.outcome import RunOutcome
 from drystone_lab.table import Rows
-from drystone_lab.walls import NOISES, NOISY, TWO_SIDED, Target, coarser, generated_noise
+from drystone_lab.walls import NOISES, Target, generated_noise
 
 GAP_SOURCE_PX = 20 / 3
 """Widest gap of a published wall that counts as a contact: 2 px at the working scale."""
@@ -61,9 +59,6 @@ def measured(labels: Labels, scale: float) -> ReferenceWall:
     )  # fmt: skip
     return ReferenceWall(metrics, resistances)
 
-
-RULES = {"paper": TWO_SIDED, "random": (*TWO_SIDED, ("selection_rule", "random"))}
-"""The paper's method, from both ends; or any candidate, all with one chance."""
 
 FILLED = 0.6
 """Filling above which walls are told apart (Fig. 24)."""
@@ -219,7 +214,7 @@ def _noise_pictures(levels: NoiseLevels) -> Iterator[ItemFigure]:
 
 def _scatter(levels: NoiseLevels) -> ItemFigure:
     groups = {
-        f"{level.noise} %{' gen.' * level.ours.wall.stand_in}": list(
+        level.ours.wall.noise: list(
             zip(level.ours.values("F_LR"), level.ours.values("F_SF"), strict=True)
         )
         for level in levels
@@ -300,37 +295,26 @@ def _series(levels: NoiseLevels, name: str) -> list[list[tuple[int, float | None
     return [full, poor, published, random]
 
 
-NOISE = PaperItem(
-    study=Study(
-        walls=NOISY,
-        ways=RULES,
-        seeds=10,
-        quick_seeds=1,
-        quick_walls=tuple(coarser(wall, 0.1) for wall in NOISY),
-        then=noise_levels,
-    ),
-    claims=noise_findings,
-    tables={
-        "levels": of_each(medians("number", "said", "way")),
-        "reference": _references,
-        "walls": of_each(
-            each_wall(
-                "number", "said", "way", "seed", "placed", "stones",
-                extra=lambda outcome: (is_full(outcome),),
-            )
-        ),
-    },
-    pictures=_noise_pictures,
-)  # fmt: skip
+def _walls(levels: NoiseLevels) -> Rows:
+    cells = {"walls": ("number", "said", "way", "seed", "placed", "stones", "<metrics>")}
+    for level in levels:
+        outcomes = (outcome for one in level.built for outcome in one.outcomes)
+        for row, outcome in zip(rows_of(cells, level.built), outcomes, strict=True):
+            yield *row, is_full(outcome)
 
-ORIENTATIONS = ("quarter", "10deg")
-"""Setting of each: the four of largest shape factor, and 36."""
+
+NOISE = PaperItem(
+    then=noise_levels,
+    claims=noise_findings,
+    tables={"reference": _references, "walls": _walls},
+    pictures=_noise_pictures,
+)
 
 
 def turned_findings(found: StudyWalls) -> Iterator[Claimed]:
     """Compare the figures of equal seeds."""
     for key, figure in (("filling", "F_SF"), ("resistance", "F_LR")):
-        few, many = (found.values(way, figure) for way in ORIENTATIONS)
+        few, many = (found.values(way, figure) for way in ("quarter", "10deg"))
         both = zip(few, many, strict=True)
         yield gain_of(key, [b - a for a, b in both if a is not None and b is not None])
 
@@ -352,28 +336,7 @@ def gain_of(key: str, gains: Sequence[float]) -> Claimed:
     return Claimed(key, median(gains) > 0 and p < LEVEL if enough else None, {"words": words})
 
 
-TURNED = PaperItem(
-    study=Study(
-        walls=NOISY,
-        ways={name: (*TWO_SIDED, ("orientations", name)) for name in ORIENTATIONS},
-        seeds=3,
-        quick_seeds=1,
-        # A few generated stones: 36 orientations of each are still a thousand candidates.
-        quick_walls=(generated_noise(70, 10, 0.1),),
-    ),
-    claims=turned_findings,
-    tables={
-        "sets": medians("name", "way"),
-        "walls": each_wall("name", "way", "seed", "placed"),
-    },
-    pictures=lambda found: (
-        study.sheet(
-            found, "fig25", 2,
-            lambda one: f"{one.wall.name}, orientations {one.way}, seed {found.seeds[0]}",
-        ),
-        study.strips(
-            found, "fig25-figures", ("F_SF", "F_LR"),
-            lambda one: f"{one.wall.number} %{' gen.' * one.wall.stand_in}, {one.way}",
-        ),
-    ),
-)  # fmt: skip
+TURNED = PaperItem(claims=turned_findings)
+
+FEW = generated_noise(70, 10, 0.1)
+"""Stones of the quick version: 36 orientations of each are still a thousand candidates."""

@@ -11,13 +11,19 @@ from scipy.stats import mannwhitneyu
 from drystone.model.wall import Wall
 from drystone_lab.pictures.charts import plot_two_figures
 from drystone_lab.pictures.walls import plot_walls
-from drystone_lab.reproduce import study
 from drystone_lab.reproduce.cells import LEVEL, figures_of, metric_cells, placed_of
-from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem
-from drystone_lab.reproduce.study import Study, StudyWalls, Trials, built, each_wall, medians
+from drystone_lab.reproduce.item import (
+    Claimed,
+    Context,
+    ItemFigure,
+    PaperItem,
+    StudyWalls,
+    Trials,
+    built,
+)
 from drystone_lab.runs.spec import Changes, generated, published
 from drystone_lab.table import Rows
-from drystone_lab.walls import TWO_SIDED, Target, coarser
+from drystone_lab.walls import TWO_SIDED, Target
 
 WALL_PX, COUNT, SCALE = 420, 100, 0.5
 """Width and height of every wall in px of the stones, stones of a set, and working resolution: the
@@ -80,22 +86,7 @@ def _rounded_pictures(found: StudyWalls) -> Iterator[ItemFigure]:
     yield ItemFigure("fig27", ax.figure)
 
 
-ROUNDED = PaperItem(
-    study=Study(
-        walls=KINDS,
-        ways={"two sides": TWO_SIDED},
-        quick_seeds=1,
-        quick_walls=tuple(coarser(wall, 0.1) for wall in KINDS),
-    ),
-    claims=rounded_findings,
-    tables={
-        "kinds": medians("name", "said"),
-        "walls": each_wall("name", "said", "seed", "placed", "stones"),
-    },
-    pictures=_rounded_pictures,
-)
-
-SIDES: Mapping[str, Changes] = {"one side": (), "two sides": TWO_SIDED}
+ROUNDED = PaperItem(claims=rounded_findings, pictures=_rounded_pictures)
 
 # Rubble as irregular as ours can be, of sizes that differ by a factor.  It has about as many
 # pixels a stone as the paper's PR has, and as much wall as its best walls fill.
@@ -126,18 +117,7 @@ def _irregular(found: StudyWalls) -> Rows:
         yield "the paper's", "published", None, f"wall {number}", placed, 91, *[None] * 6
 
 
-IRREGULAR = PaperItem(
-    study=Study(
-        walls=(coarser(RUBBLE, 0.25), RUBBLE), ways=SIDES, seeds=1,
-        quick_walls=(coarser(RUBBLE, 0.25),), quick_seeds=1,
-    ),
-    tables={"walls": _irregular},
-    pictures=lambda found: [
-        study.sheet(
-            found, "figB33", 2, lambda one: f"{found.name} at {one.wall.scale:g}, from {one.way}"
-        )
-    ],
-)  # fmt: skip
+IRREGULAR = PaperItem(tables={"walls": _irregular})
 
 OVERLAP = 0.25
 """Of the brick's length, by which head joints of neighbouring courses are apart at least: the
@@ -228,10 +208,11 @@ def brick_walls(context: Context, size: tuple[int, int] | None = None) -> Bricks
     """Build walls of bricks of both aspects; bricks are enough for all courses."""
     width, courses = size or (QUICK_SIZE if context.quick else FULL_SIZE)
     walls = [_brick_wall(aspect, width, courses).here(context.data) for aspect in ASPECTS]
-    found = built(context, walls, SIDES, (context.seed,))
+    sides: Mapping[str, Changes] = {"one side": (), "two sides": TWO_SIDED}
+    found = built(context, walls, sides, (context.seed,))
     return [
         (aspect, one, found.wall(one))
-        for side in SIDES
+        for side in sides
         for aspect, one in zip(ASPECTS, found.of(side), strict=True)
     ]
 

@@ -18,8 +18,7 @@ from drystone_lab import timed_walls
 from drystone_lab.pictures.charts import plot_growth, step_time_panels
 from drystone_lab.pictures.walls import plot_walls
 from drystone_lab.reproduce.cells import metric_cells, placed_of, trend
-from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem
-from drystone_lab.reproduce.study import ONE_WAY, StudyWalls, built
+from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem, StudyWalls, built
 from drystone_lab.table import Cell, Rows
 from drystone_lab.timed_walls import SAMPLINGS, TimedWall, fitted, parts_ms, three_digits
 from drystone_lab.walls import PR, Target
@@ -213,7 +212,7 @@ def by_scale(
 ) -> ScaledWalls:
     """Plan a wall at several resolutions."""
     walls = {scale: replace(wall, scale=scale * wall.scale) for scale in scales}
-    found = built(context, tuple(walls.values()), ONE_WAY, (context.seed,))
+    found = built(context, tuple(walls.values()), {"variant": ()}, (context.seed,))
     return ScaledWalls(found, {scale: timed(context, one, {}) for scale, one in walls.items()})
 
 
