@@ -1,24 +1,35 @@
-"""Walls planned from the published stone sets; suite "walls": every step by every solver."""
+"""Walls planned from published stone sets: every step by every solver, and in a rigid-body engine.
 
-from collections.abc import Iterator
+Suite "walls" compares solvers; suite "engine" builds walls up in the engine, and "tilt" tilts them.
+"""
+
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from statistics import median
+from typing import NamedTuple
 
 import numpy as np
+from scipy.stats import spearmanr
 
+from drystone.contacts.outlines import model_of_traced, outlines_of_labels
 from drystone.model.plan import Plan
 from drystone.model.stone import StoneSet
 from drystone.model.wall import Wall
+from drystone.physics.building import BuildUp, build_up, tilt_of
+from drystone.physics.scatter import TiltComparison, compare_with_tilt, usual_variations
+from drystone.physics.scene import EngineScene
 from drystone.statics.flow.nonassociative import nonassociative_resistance
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.lp.extremes import Solver
 from drystone.statics.model import RigidBlockModel
 from drystone.verify.claims import wall_model
 from drystone.verify.lengths import plan_settings
+from drystone.verify.outlines import plan_polygons
 from drystone.verify.replay import replay_plan
 from drystone_lab.runs.outcome import execute
 from drystone_lab.table import BENCH, BenchSettings, Cell, Table, worded
-from drystone_lab.walls import IR, PR, R
+from drystone_lab.walls import BRICKS, IR, JUDGED, PR, R, Target
 
 SETS = (PR, R, IR)
 
@@ -104,3 +115,120 @@ def _row(wall: PlannedWall) -> tuple[Cell, ...]:
         max(residuals), None if last.value is None else last.value * last.mu, least,
         "pass" if holds else "miss",
     )  # fmt: skip
+
+
+BothSides = tuple[float | None, float | None]
+
+
+class EngineWall(NamedTuple):
+    """A wall in the engine; ends are to the left and to the right."""
+
+    name: str
+    stones: int  # in it
+    built: BuildUp
+    alphas: BothSides  # load multipliers of the plan
+    tilts: BothSides  # tangents at which it comes down; None when it fell before, or never
+
+
+def run_engine(settings: BenchSettings) -> tuple[Table, ...]:
+    """Build every wall in the engine, then tilt it."""
+    judged = [
+        _judged(target, stones, seed)
+        for target in ((BRICKS,) if settings.quick else JUDGED)
+        if (stones := target.stones(settings.data)) is not None
+        for seed in range(settings.seed, settings.seed + (1 if settings.quick else 5))
+    ]
+    return (
+        worded(BENCH["engine"]["walls"], map(_engine_row, judged), more=missing_data(settings)),
+        _summary(judged),
+    )
+
+
+def _judged(target: Target, stones: StoneSet, seed: int) -> EngineWall:
+    outcome = execute(target.run(seed, ("search.budget", 1), method="best"), None, stones)
+    plan, figures = outcome.as_plan, outcome.figures
+    built = build_up(plan_polygons(plan, stones), float(plan.settings["mu"]))
+    found = tilt_of(built)
+    tilts = (None, None) if found is None else (found[0].alpha, found[1].alpha)
+    alphas = figures["alpha_left"], figures["alpha_right"]
+    return EngineWall(f"{target.name}, seed {seed}", len(plan.stone_steps), built, alphas, tilts)
+
+
+def _engine_row(judged: EngineWall) -> tuple[Cell, ...]:
+    moves = judged.built.moves
+    return (
+        judged.name, judged.stones, ", ".join(map(str, judged.built.fallen)) or "none",
+        max(move.move_px for move in moves), max(move.share for move in moves),
+        max(move.turn_deg for move in moves), max(move.overlap_px for move in moves),
+        judged.alphas[0], judged.tilts[0], judged.alphas[1], judged.tilts[1],
+    )  # fmt: skip
+
+
+def _summary(judged: Sequence[EngineWall]) -> Table:
+    standing = sum(one.built.stands for one in judged)
+    pairs = [
+        (alpha, tilt)
+        for one in judged
+        for alpha, tilt in zip(one.alphas, one.tilts, strict=True)
+        if alpha is not None and tilt is not None
+    ]
+    weaker = [
+        (min(a for a in one.alphas if a is not None), min(t for t in one.tilts if t is not None))
+        for one in judged
+        if None not in one.alphas and None not in one.tilts
+    ]
+    ratios = [tilt / alpha for alpha, tilt in pairs if alpha > 0]
+    row = (
+        len(judged), f"{standing} of {len(judged)}", len(pairs),
+        *(float(spearmanr(of).statistic) if len(of) > 2 else None for of in (pairs, weaker)),
+        median(ratios) if ratios else None,
+    )  # fmt: skip
+    return worded(BENCH["engine"]["summary"], [row])
+
+
+BOTH_FALL = "both fall"
+"""The outlines do not stand, by the analysis and in the engine."""
+
+
+def run_tilted(settings: BenchSettings) -> tuple[Table, ...]:
+    """Return simulated and predicted load multipliers of the same outlines, a row a direction."""
+    walls = planned_walls(settings, methods=("paper",), seeds=3)
+    rows = [row for wall in walls for row in _tilted_rows(wall, settings)]
+    agreeing = sum(row[5] in ("yes", BOTH_FALL) for row in rows)
+    counted = f"{agreeing} of {len(rows)} directions: " if rows else ""
+    words, more = BENCH["tilt"]["directions"], missing_data(settings)
+    return (worded(words, rows, more=more, counted=counted),)
+
+
+def _tilted_rows(wall: PlannedWall, settings: BenchSettings) -> list[tuple[Cell, ...]]:
+    outlines = outlines_of_labels(wall.after[-1].labels)
+    variations = usual_variations()
+    compared = compare_with_tilt(
+        EngineScene(outlines, wall.mu),
+        model_of_traced(outlines, wall.mu),
+        np.random.default_rng(settings.seed),
+        variations=variations[:1] if settings.quick else variations,
+    )
+    return [_tilted_row(wall.name, one) for one in compared]
+
+
+def _tilted_row(name: str, one: TiltComparison) -> tuple[Cell, ...]:
+    simulated = one.simulated
+    motion, fall = simulated.interval("first motion"), simulated.interval("fall")
+    predicted = one.nonassociative
+    inside = predicted is not None and motion is not None and motion[0] <= predicted <= motion[1]
+    # Trials that fall at rest would make the scatter as wide as one likes.
+    inside = inside and not simulated.fell_at_rest
+    both_fall = one.associative is None and simulated.fell_at_rest
+    why = "falls" if one.associative is None else "not certain to stand"
+    return (
+        name, simulated.direction, one.associative,
+        why if one.associative is None or predicted is None else predicted,
+        "falls at rest" if simulated.fell_at_rest else _interval(motion),
+        BOTH_FALL if both_fall else "yes" if inside else "no",
+        _interval(fall), simulated.settled_shift,
+    )  # fmt: skip
+
+
+def _interval(found: tuple[float, float] | None) -> str:
+    return "never" if found is None else f"{found[0]:.3f} to {found[1]:.3f}"

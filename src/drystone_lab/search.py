@@ -330,10 +330,6 @@ def do(task: SearchTask) -> tuple[SearchTask, list[SearchResult]]:
     return task, [result_of(one) for one in looked]
 
 
-ByWay = Mapping[str, Sequence[SearchResult]]
-"""Results on one wall, seed after seed, by method."""
-
-
 def run(settings: BenchSettings) -> tuple[Table, ...]:
     """Let every method look for every wall with every seed."""
     own = [name for name, _ in settings.changes if name in ("geometry", "search.budget")]
@@ -374,7 +370,7 @@ def run(settings: BenchSettings) -> tuple[Table, ...]:
     return (*tables, masons_walls(settings))
 
 
-def _rows(wall: str, stones: int, by_way: ByWay) -> Rows:
+def _rows(wall: str, stones: int, by_way: Mapping[str, Sequence[SearchResult]]) -> Rows:
     for way, results in by_way.items():
         placed = [one["placed"] for one in results if one["placed"] is not None]
         medians, spent = (
@@ -386,7 +382,7 @@ def _rows(wall: str, stones: int, by_way: ByWay) -> Rows:
         yield wall, way, words, *medians[:2], possible, *medians[2:], *spent
 
 
-def _differences(wall: str, by_way: ByWay) -> Rows:
+def _differences(wall: str, by_way: Mapping[str, Sequence[SearchResult]]) -> Rows:
     for way in (RESTARTS, WEDGED, NO_COURSES):
         if not by_way.keys() >= {SEARCH, way}:
             continue

@@ -14,16 +14,8 @@ from numpy.typing import NDArray
 
 from drystone.kernels.paths import row_lengths, step_counts
 from drystone.kernels.raster import Mask
+from drystone.metrics import paths
 from drystone.metrics.frame import frame_wall
-from drystone.metrics.paths import (
-    PAD_BOTTOM,
-    PAD_LEFT,
-    PAD_RIGHT,
-    PAD_TOP,
-    joint_mask,
-    length_px,
-    mean_excess,
-)
 from drystone.model.outlines import Outlined, Outlines
 from drystone.model.site import Site
 from drystone.model.wall import Labels
@@ -57,11 +49,11 @@ def second_arrangement(labels: Labels) -> SecondArrangement:
     resolution, and cut to its stones: where it is a little shorter than planned, paths must not
     run through the slit at its end.
     """
-    joint = joint_mask(frame_wall(labels).labels)
-    rows, cols = slice(PAD_TOP, -PAD_BOTTOM), slice(PAD_LEFT, -PAD_RIGHT)
+    joint = paths.joint_mask(frame_wall(labels).labels)
+    rows, cols = slice(paths.PAD_TOP, -paths.PAD_BOTTOM), slice(paths.PAD_LEFT, -paths.PAD_RIGHT)
     # As wide on both sides, so that a wall and its mirror image are worth the same.
-    with_top_and_foot = joint[PAD_TOP - 1 : 1 - PAD_BOTTOM, cols]
-    with_ends = joint[rows, PAD_LEFT - 1 : 1 - PAD_RIGHT]
+    with_top_and_foot = joint[paths.PAD_TOP - 1 : 1 - paths.PAD_BOTTOM, cols]
+    with_ends = joint[rows, paths.PAD_LEFT - 1 : 1 - paths.PAD_RIGHT]
     return SecondArrangement(F_AV=_mean_excess(with_top_and_foot.T), F_AH=_mean_excess(with_ends))
 
 
@@ -88,7 +80,7 @@ def _mean_excess(joint: Mask) -> float | None:
     first = (2 * np.arange(STARTS // 2) + 1) * side // (2 * STARTS)
     starts = np.concatenate([first, side - 1 - first[::-1]])
     lengths = [*_lengths_across(joint, starts), *_lengths_across(joint[:, ::-1], starts)]
-    return mean_excess(lengths, straight)
+    return paths.mean_excess(lengths, straight)
 
 
 def _lengths_across(joint: Mask, rows: NDArray[np.intp]) -> list[float]:
@@ -99,4 +91,4 @@ def _lengths_across(joint: Mask, rows: NDArray[np.intp]) -> list[float]:
     """
     both = np.hstack([joint, joint[:, -2::-1]])
     lengths = row_lengths(both, rows).tolist()
-    return [length_px(*step_counts(length // 2)) for length in lengths if length >= 0]
+    return [paths.length_px(*step_counts(length // 2)) for length in lengths if length >= 0]

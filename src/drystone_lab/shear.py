@@ -276,7 +276,7 @@ def _mean_and_deviation(ratios: Sequence[Sequence[float | None]]) -> list[str]:
 def _draw(model: ShearModel, path: Path) -> None:
     """Draw predicted against measured, associative, with the band of friction."""
     from drystone.drawing.canvas import save  # noqa: PLC0415 - Matplotlib takes long to import
-    from drystone_lab.pictures.charts import Prediction, plot_predictions  # noqa: PLC0415
+    from drystone_lab.pictures import Prediction, plot_predictions  # noqa: PLC0415
 
     points = []
     for level, restraint in RESTRAINTS.items():

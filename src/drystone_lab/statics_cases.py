@@ -4,8 +4,11 @@ They are known from a formula, or from other people's programs.
 """
 
 import math
+import tomllib
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import accumulate, pairwise
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -19,15 +22,6 @@ from drystone_lab.table import BENCH, BenchSettings, Cell, Table, worded
 
 Rectangle = tuple[float, float, float, float]
 """x, y of the lower left corner, width, height."""
-
-BLOCKS = ((1.0, 1.0, 0.3), (1.0, 2.0, 0.7), (1.0, 4.0, 0.65), (2.0, 1.0, 0.65), (0.2, 1.0, 0.7))
-"""Width, height and mu of single blocks; the last is that of Portioli's examples."""
-
-PAIRS = ((1.0, 1.0, 0.65), (2.0, 1.0, 0.65), (3.0, 0.5, 0.9))
-"""Width, height and mu of two equal blocks, one on the other."""
-
-SHIFTS = (0.0, 0.1, 0.2, 0.4, 0.5)
-"""How far the upper of two unit blocks is shifted towards +x."""
 
 
 @dataclass(frozen=True)
@@ -128,10 +122,14 @@ def running_bond() -> KnownWall:
 
 def closed_forms() -> tuple[KnownWall, ...]:
     """Return all cases of this page."""
+    # The last is that of Portioli's examples.
+    blocks = (1.0, 1.0, 0.3), (1.0, 2.0, 0.7), (1.0, 4.0, 0.65), (2.0, 1.0, 0.65), (0.2, 1.0, 0.7)
+    pairs = (1.0, 1.0, 0.65), (2.0, 1.0, 0.65), (3.0, 0.5, 0.9)
+    shifts = 0.0, 0.1, 0.2, 0.4, 0.5
     return (
-        *(single_block(*block) for block in BLOCKS),
-        *(two_equal_blocks(*pair) for pair in PAIRS),
-        *(offset_stack(shift, mu) for mu in (0.9, 0.3) for shift in SHIFTS),
+        *(single_block(*block) for block in blocks),
+        *(two_equal_blocks(*pair) for pair in pairs),
+        *(offset_stack(shift, mu) for mu in (0.9, 0.3) for shift in shifts),
         running_bond(),
     )
 
@@ -213,22 +211,16 @@ HEIGHT, MU = 1.75, 0.65
 BRICKS = {"f": 4, "h": 2, "-": 4}
 """Widths of a full brick, a half one and a gap."""
 
-A, B, A_OPEN, B_OPEN = "hffffh", "fffff", "f-f-f", "hh-hh-hh"
-P, Q, P_OPEN, Q_OPEN = "ffff", "hfffh", "fh-hf", "hf-fh"
-C, D, C_OPEN, D_OPEN = "hffh", "fff", "f-f", "hh-hh"
-E, F, E_OPEN, F_OPEN = "hffffffh", "fffffff", "hf-ff-fh", "fh-hfh-hf"
-"""Courses, and the same with openings."""
-
 
 def ferris_wall(
     number: int,
-    courses: tuple[str, ...],
+    courses: Sequence[str],
     alpha: float,
-    nonassociative: tuple[float, float],
+    nonassociative: Sequence[float],
     *,
     may_not_converge: bool = False,
 ) -> KnownWall:
-    """Return one of the examples, with its courses from the bottom up.
+    """Return a wall of Ferris and Tin-Loi, with its courses from the bottom up.
 
     >>> model = WALLS[0].model
     >>> len(model.blocks), len(model.interfaces)
@@ -240,27 +232,18 @@ def ferris_wall(
         for brick, left in zip(course, lefts, strict=False):
             if brick != "-":
                 found.append((float(left), HEIGHT * row, float(BRICKS[brick]), HEIGHT))
+    low, high = nonassociative
     # They are published to five digits: half a unit of the last one.
     return KnownWall(
         f"example {number}, {len(found)} blocks", tuple(found), MU, alpha, alpha, 5e-6,
-        nonassociative, may_not_converge,
+        (low, high), may_not_converge,
     )  # fmt: skip
 
 
-WALLS = (
-    ferris_wall(1, (A, B) * 3, 0.64286, (0.638, 0.650)),
-    ferris_wall(2, (A, B) * 5, 0.58000, (0.550, 0.564)),
-    ferris_wall(3, (P, Q, P, *(Q_OPEN, P_OPEN) * 2, Q_OPEN, P, Q, P), 0.40369, (0.350, 0.361)),
-    ferris_wall(4, (A, B, A, *(A_OPEN, B_OPEN) * 2, A_OPEN, A, B, A), 0.33195, (0.262, 0.267)),
-    ferris_wall(
-        5, (*(C, D, C, *(C_OPEN, D_OPEN) * 2, C_OPEN) * 2, C, D, C), 0.23964, (0.205, 0.217)
-    ),
-    ferris_wall(
-        6, (E, F, *(E, F, *(E_OPEN, F_OPEN) * 2, E_OPEN, F) * 2, E, F, E), 0.34782, (0.0, 0.34783),
-        may_not_converge=True,
-    ),
-)  # fmt: skip
-"""Ferris and Tin-Loi (2001); no load factor without dilatancy is above the associative one."""
+_FILE = tomllib.loads(Path(__file__).with_name("statics_cases.toml").read_text("utf-8"))
+
+WALLS = tuple(ferris_wall(number, **wall) for number, wall in enumerate(_FILE["walls"], 1))
+"""Ferris and Tin-Loi (2001)."""
 
 QUICK_ARCHES = (*WITHOUT_SLIDING[:2], *WITH_FRICTION[2::2])
 

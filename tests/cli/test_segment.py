@@ -15,8 +15,7 @@ from drystone.cli.parser import build_parser
 from drystone.photo.layout import parse_layout
 from drystone.photo.markers import find_markers
 from drystone.photo.scale import scale_and_view
-from drystone_lab.photographs.layout import PhotoLevel
-from drystone_lab.photographs.scene import photograph
+from drystone_lab.photographs.rendered import PhotoLevel, photograph
 from drystone_lab.photos import overlaps
 
 SHEET = PhotoLevel(

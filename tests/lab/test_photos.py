@@ -3,8 +3,7 @@
 import numpy as np
 
 from drystone_lab import photos
-from drystone_lab.photographs.real import ALL, there
-from drystone_lab.photos import whole_stones
+from drystone_lab.photos import ALL, there, whole_stones
 from drystone_lab.table import BenchSettings
 
 

@@ -1,15 +1,17 @@
-"""Planned walls are looked at on the geometry that they were planned on."""
+"""Planned walls on the geometry that they were planned on, and in the engine."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.result import LimitStatus
-from drystone_lab import planned_walls as agreement
-from drystone_lab.planned_walls import PlannedWall, planned_walls
+from drystone_lab import planned_walls as suites
+from drystone_lab.planned_walls import EngineWall, PlannedWall, planned_walls
 from drystone_lab.table import BenchSettings
+from drystone_lab.walls import BRICKS
 from tests.verify.exact_examples import exact_example
 from tests.verify.examples import example
 
@@ -35,7 +37,7 @@ def test_walls_are_planned_of_the_published_sets(data_dir):
 def test_solvers_agree_on_outlines():
     made = exact_example()
     wall = PlannedWall("by hand", made.plan, made.stones)
-    row = agreement._row(wall)
+    row = suites._row(wall)
     assert row[:4] == ("by hand", 5, 10, 10)
     assert (row[5], row[-1]) == (10, "pass")
     assert row[8] == pytest.approx(made.plan.metrics.F_LR * 0.58)
@@ -52,8 +54,83 @@ def test_solvers_agree_on_outlines():
 def test_one_solver_that_says_otherwise_is_a_miss(spoil, monkeypatch):
     def other(model, *, solver):
         found = lateral_resistance(model, solver=solver)
-        return replace(found, left=spoil(found.left)) if solver == agreement.SOLVERS[-1] else found
+        return replace(found, left=spoil(found.left)) if solver == suites.SOLVERS[-1] else found
 
     made = exact_example(count=2)
-    monkeypatch.setattr(agreement, "lateral_resistance", other)
-    assert agreement._row(PlannedWall("by hand", made.plan, made.stones))[-1] == "miss"
+    monkeypatch.setattr(suites, "lateral_resistance", other)
+    assert suites._row(PlannedWall("by hand", made.plan, made.stones))[-1] == "miss"
+
+
+def test_bricks_stand_and_slide_at_their_friction():
+    pytest.importorskip("pymunk", reason="pymunk is not installed (extra `physics`)")
+    walls, summary = suites.run_engine(BenchSettings(quick=True))
+    (row,) = walls.records()
+    assert (row["wall"], row["stones"], row["fallen"]) == ("bricks, seed 0", 9, "none")
+    for name, most in (("moved most px", 0.1), ("turn deg", 0.1), ("overlap px", 0.01)):
+        assert row[name] < most
+    for side in ("left", "right"):
+        assert row[f"alpha {side}"] == pytest.approx(0.58)
+        assert row[f"tilt {side}"] == pytest.approx(0.58, abs=0.02)
+    (record,) = summary.records()
+    assert (record["walls"], record["nothing falls"], record["both sides"]) == (1, "1 of 1", 2)
+    assert record["rank correlation"] is record["weaker side"] is None
+    assert record["tilt / alpha"] == pytest.approx(1.0, abs=0.03)
+
+
+def test_what_fell_or_never_falls_is_in_no_pair():
+    judged = [
+        EngineWall("wall", 9, SimpleNamespace(stands=tilts != (None, None)), alphas, tilts)
+        for alphas, tilts in (
+            ((0.1, 0.2), (0.2, 0.3)),
+            ((0.3, 0.5), (0.35, 0.6)),
+            ((0.4, 0.6), (0.3, None)),
+            ((0.5, None), (None, None)),
+            ((0.6, 0.55), (0.9, 0.7)),
+        )
+    ]
+    (record,) = suites._summary(judged).records()
+    assert (record["walls"], record["nothing falls"], record["both sides"]) == (5, "4 of 5", 7)
+    # Alphas .1 .2 .3 .4 .5 .55 .6 and tilts .2 .3 .35 .3 .6 .7 .9: ranks 1 2.5 4 2.5 5 6 7.
+    assert record["rank correlation"] == pytest.approx(0.93697, abs=1e-5)
+    assert record["weaker side"] == pytest.approx(1.0)  # (.1, .2), (.3, .35), (.55, .7)
+    # Ratios .75 1.17 1.2 1.27 1.5 1.5 2.
+    assert record["tilt / alpha"] == pytest.approx(0.7 / 0.55)
+
+
+def test_a_wall_that_does_not_rest_is_not_tilted(monkeypatch):
+    monkeypatch.setattr(suites, "build_up", lambda *_: None)
+    monkeypatch.setattr(suites, "tilt_of", lambda _: None)
+    assert suites._judged(BRICKS, BRICKS.stones(None), 0).tilts == (None, None)
+
+
+@pytest.mark.parametrize(
+    ("factors", "motion", "fell", "agreement"),
+    [
+        ((0.5, 0.4), (0.39, 0.41), False, "yes"),
+        ((0.5, 0.4), (0.41, 0.42), False, "no"),
+        ((0.5, 0.4), None, False, "no"),
+        ((0.5, None), (0.1, 0.2), False, "no"),
+        ((None, None), None, True, "both fall"),
+        ((0.5, 0.4), None, True, "no"),
+        ((0.5, 0.4), (0.0, 0.5), True, "no"),
+        ((None, None), (0.1, 0.2), False, "no"),
+    ],
+)
+def test_what_counts_as_agreement(factors, motion, fell, agreement):
+    simulated = SimpleNamespace(
+        direction="left", fell_at_rest=fell, settled_shift=0.1, interval=lambda _: motion
+    )
+    both = dict(zip(("associative", "nonassociative"), factors, strict=True))
+    assert suites._tilted_row("wall", SimpleNamespace(simulated=simulated, **both))[5] == agreement
+
+
+def test_a_picture_is_tilted_and_predicted():
+    """A stone of 20 x 40 px topples at .5, whatever the flow rule."""
+    pytest.importorskip("pymunk", reason="pymunk is not installed (extra `physics`)")
+    after = SimpleNamespace(labels=np.ones((40, 20), np.uint32))
+    wall = SimpleNamespace(name="stone", after=(after,), mu=0.58)
+    for row in suites._tilted_rows(wall, BenchSettings(quick=True)):
+        assert row[2:4] == pytest.approx((0.5, 0.5))
+        low, high = (float(end) for end in row[4].split(" to "))
+        assert low == pytest.approx(0.5, abs=0.01)
+        assert low < high < low + 0.01

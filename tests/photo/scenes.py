@@ -5,7 +5,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from drystone.photo.view import apply
-from drystone_lab.photographs.layout import PhotoLevel
+from drystone_lab.photographs.rendered import PhotoLevel
 
 SMALL = PhotoLevel(
     name="small", count=8, width_px=600, height_px=450, px_per_m=400.0, gap_px=10, markers="none"

@@ -28,7 +28,7 @@ from drystone.photo.segment_doubts import (
 )
 from drystone.photo.segment_ground import SegmentSettings
 from drystone.photo.segment_photo import placed_markers, segment_photo
-from drystone_lab.photographs.scene import photograph
+from drystone_lab.photographs.rendered import photograph
 from drystone_lab.photos import overlaps, pixels, score
 from tests.photo.scenes import SMALL
 

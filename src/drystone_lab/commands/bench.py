@@ -13,7 +13,7 @@ from drystone.cli.progress import busy
 from drystone.cli.settings import read_toml
 from drystone.errors import ExitCode, UsageError
 from drystone.io.published import published_folder
-from drystone_lab.commands.options import say
+from drystone_lab.commands import say
 from drystone_lab.public.suites import PUBLIC_SUITES, flat_changes, known_methods
 from drystone_lab.table import BENCH, BenchSettings, Table
 
@@ -133,7 +133,7 @@ def _refuse(arguments: argparse.Namespace, who: str) -> None:
 
 def _history(arguments: argparse.Namespace, suite: str | None) -> Sequence[Table]:
     """Return what a store holds by version, and draw it with -o; E138 for other options."""
-    from drystone_lab.public import history  # noqa: PLC0415 - see above
+    from drystone_lab.public import tables  # noqa: PLC0415 - see above
     from drystone_lab.public.store import kept_runs  # noqa: PLC0415
 
     _refuse(arguments, HISTORY)
@@ -144,13 +144,13 @@ def _history(arguments: argparse.Namespace, suite: str | None) -> Sequence[Table
         what = "the store holds no runs" + (f" of {suite!r}." if suite else ".")
         cure = "`drystone bench --suite NAME --store DIR` adds some."
         raise _useless(what, arguments.store, cure)
-    medians = history.medians_of(runs)
+    medians = tables.medians_of(runs)
     if arguments.output is not None:
         from drystone.drawing.canvas import save  # noqa: PLC0415 - see above
 
         make_folder(Path(arguments.output))
         for each in dict.fromkeys(one.suite for one in medians):
             path = Path(arguments.output) / f"history-{each.replace('/', '-')}.png"
-            save(history.drawn_history([one for one in medians if one.suite == each]), path, 150)
+            save(tables.drawn_history([one for one in medians if one.suite == each]), path, 150)
             say(f"wrote {path}")
-    return (history.history_table(medians),)
+    return (tables.history_table(medians),)

@@ -10,7 +10,7 @@ from drystone.cli.output import make_folder, print_json
 from drystone.errors import ExitCode, UsageError
 from drystone.io.folder_lock import locked
 from drystone.io.published import published_folder
-from drystone_lab.commands.options import say
+from drystone_lab.commands import say
 from drystone_lab.reproduce.items import ALL, ITEMS, item_names
 
 if TYPE_CHECKING:  # loaded when something is made: --list does not wait for matplotlib
@@ -27,8 +27,11 @@ def run(arguments: argparse.Namespace, items: "Mapping[str, PaperItem] | None" =
     names = _names(arguments)
     folder = Path(arguments.output)
     make_folder(folder)
-    from drystone_lab.reproduce.driver import Options, reproduce  # noqa: PLC0415 - see above
-    from drystone_lab.reproduce.page import PAGE  # noqa: PLC0415
+    from drystone_lab.reproduce.driver import (  # noqa: PLC0415 - see above
+        PAGE,
+        Options,
+        reproduce,
+    )
     from drystone_lab.runs.workers import work_of  # noqa: PLC0415
 
     done = []

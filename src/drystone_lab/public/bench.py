@@ -20,7 +20,7 @@ from drystone_lab.public.tables import BenchResults, comparison, pair_tables
 from drystone_lab.runs.outcome import Runner, RunOutcome, RunStore, absent_data
 from drystone_lab.runs.spec import STRIPS, RunSpec
 from drystone_lab.runs.workers import work_of
-from drystone_lab.table import BenchSettings, Table
+from drystone_lab.table import BENCH, BenchSettings, Table
 from drystone_lab.walls import Target
 
 
@@ -37,13 +37,6 @@ def pga_of(spec: RunSpec, outcome: RunOutcome, data: Path | None) -> float | Non
     stones = frozenset(placement.stone_id for placement in wall.placements)
     return shake_once(EngineScene(outlines, spec.settings().mu), ROUNDED, watched=stones)
 
-
-YARDSTICK = (
-    f"{STRIPS} is a yardstick, in no pairs and no ranking: all stones packed into a strip as "
-    f"high as the wall, by quarter turns, {STRIP_SECONDS} s each, without gravity, order or "
-    "support. Its F_SF is their area over that of the strip, or over that of the wall where "
-    "the strip is shorter; it has no other figures. What it finds depends on the machine."
-)
 
 BenchRun = tuple[RunSpec, RunOutcome, KeptRun]
 
@@ -76,7 +69,8 @@ def run_public(suite: str, settings: BenchSettings, made_at: str) -> tuple[Table
     first, *others = (*comparison(results), *pair_tables(planned))
     notes = [*first.notes]
     if STRIPS in results.methods:
-        notes.append(YARDSTICK)
+        words = BENCH["public"]["yardstick"]
+        notes.append(words.format(method=STRIPS, seconds=STRIP_SECONDS))
     if left_out := ", ".join(wall.name for wall in asked if wall not in walls):
         needed = "as they need the published stone sets (`drystone fetch`, or --data DIR)"
         notes.append(f"Left out, {needed}: {left_out}.")

@@ -13,17 +13,10 @@ from typing import Any
 from drystone.errors import UsageError
 from drystone.planner.settings import method_settings
 from drystone.selection.policies.registry import BUILT_IN, GROUP, PAPER, RULES, no_policy, rule_of
+from drystone_lab import walls as made
 from drystone_lab.runs.spec import STRIPS, Changes, Scalar, flat, nested
-from drystone_lab.walls import (
-    IR_FRAMED,
-    NOISY,
-    PR_560,
-    PR_600,
-    R_FRAMED,
-    Target,
-    chosen,
-    made_walls,
-)
+from drystone_lab.table import BENCH
+from drystone_lab.walls import Target, chosen
 
 SUITE_VERSION = 1
 
@@ -35,25 +28,14 @@ _WALLS: Mapping[str, tuple[Target, ...]] = MappingProxyType(
             replace(wall, name=wall.name.removesuffix(" framed"), suite=suite) for wall in walls
         )
         for suite, walls in {
-            "masons": (PR_560, PR_600, R_FRAMED, IR_FRAMED),
-            **made_walls(Path(__file__).with_name("suites.toml")),
-            "noise": NOISY,
+            "masons": (made.PR_560, made.PR_600, made.R_FRAMED, made.IR_FRAMED),
+            **made.made_walls(Path(__file__).with_name("suites.toml")),
+            "noise": made.NOISY,
         }.items()
     }
 )
 
-PUBLIC_SUITES: Mapping[str, str] = MappingProxyType(
-    {
-        "masons": "the published stones of Almeida et al. (2021), from which masons built",
-        "fourier": "generated rounded stones, 20, 60 and 120, round and long",
-        "polygons": "generated polygons, 40, noise 20, 50 and 80 %",
-        "rubble": "generated rubble for courses, 30, 60 and 120",
-        "bricks": "equal bricks, 2:1 and 3:1, and with halves",
-        "sizes": "generated polygons of one kind, 20 to 500",
-        "noise": "the published polygons of Thangavelu et al. (2018), noise 10 to 80 %",
-        ALL: "all walls of these seven",
-    }
-)
+PUBLIC_SUITES: Mapping[str, str] = BENCH["public"]["suites"]
 """What each is about.  Of generated stones there are .85 of the wall, within .01."""
 
 

@@ -14,7 +14,7 @@ from drystone.drawing.palette import OUTLINE_COLOUR, cluster_colour
 from drystone.drawing.pictures.stones import plot_stones
 from drystone.model.stone import StoneSet
 from drystone.poses import PoseBook
-from drystone_lab.pictures.charts import name_axes
+from drystone_lab.pictures import name_axes
 from drystone_lab.reproduce.cells import rounded
 from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem
 from drystone_lab.table import Rows
@@ -102,10 +102,6 @@ class ClusteredStones:
         return float(self.merges[-count]), float(self.merges[1 - count])
 
 
-Clustered = Sequence[ClusteredStones]
-"""Sets of stones, of which the first is drawn."""
-
-
 def grouped(
     context: Context, wall: Target = PR, others: Sequence[Target] = MASONS
 ) -> list[ClusteredStones]:
@@ -114,7 +110,7 @@ def grouped(
     return [ClusteredStones.of(name, stones) for name, stones in sets.items() if stones is not None]
 
 
-def _clusters(sets: Clustered) -> Rows:
+def _clusters(sets: Sequence[ClusteredStones]) -> Rows:
     drawn = sets[0]
     place = np.array([drawn.clusters[stone.id] for stone in drawn.stones])
     for cluster in range(1, drawn.number + 1):
@@ -123,7 +119,7 @@ def _clusters(sets: Clustered) -> Rows:
         yield cluster, len(ids), *map(rounded, means), " ".join(map(str, ids))
 
 
-def _picture(sets: Clustered) -> ItemFigure:
+def _picture(sets: Sequence[ClusteredStones]) -> ItemFigure:
     drawn = sets[0]
     figure = Figure(figsize=(7.2, 6.4), layout="constrained")
     above, below = figure.subfigures(2, 1, squeeze=False, height_ratios=(1.5, 1.0))[:, 0]
@@ -133,7 +129,7 @@ def _picture(sets: Clustered) -> ItemFigure:
     return ItemFigure("fig5", figure, drawn)
 
 
-def _claims(sets: Clustered) -> Iterator[Claimed]:
+def _claims(sets: Sequence[ClusteredStones]) -> Iterator[Claimed]:
     number, (low, high) = sets[0].number, sets[0].between(PAPER_CLUSTERS)
     values = {"number": number, "low": low, "high": high}
     yield Claimed("seven", number == PAPER_CLUSTERS, values)

@@ -24,7 +24,7 @@ from drystone.model.landscape import Box
 from drystone.model.pose import PosedStone
 from drystone.model.wall import Labels
 from drystone.stabilise.stabilise import falls_to
-from drystone_lab.pictures.walls import plot_landscape
+from drystone_lab.pictures import plot_landscape
 from drystone_lab.reproduce.cells import rounded
 from drystone_lab.reproduce.construction import Moment, RestingPlace, amid_course, construction
 from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem

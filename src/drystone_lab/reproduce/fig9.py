@@ -15,15 +15,8 @@ from drystone.drawing.palette import GREY, OUTLINE_COLOUR, WEDGE_COLOUR
 from drystone.kernels.raster import Mask
 from drystone.model.placement import Wedge
 from drystone.model.wall import Labels
-from drystone.stabilise.stabilise import (
-    Pose,
-    Support,
-    WedgeStock,
-    falling_side,
-    make_stable,
-    rotate_to_rest,
-    support_polyline,
-)
+from drystone.stabilise import stabilise
+from drystone.stabilise.stabilise import Pose, Support
 from drystone_lab.reproduce.construction import Moment, construction
 from drystone_lab.reproduce.item import Context, ItemFigure, PaperItem
 from drystone_lab.table import Rows
@@ -186,12 +179,14 @@ def _treated(moment: Moment, trial: SupportedStone) -> Unstable:
     """Turn a stone that falls, and wedge it instead."""
     occupied, workshop = moment.wall.occupied, moment.workshop
     settings = moment.settings.stabilise
-    rotation = rotate_to_rest(occupied, trial.pose, workshop.book, settings)
+    rotation = stabilise.rotate_to_rest(occupied, trial.pose, workshop.book, settings)
     turned = None if rotation.pose is None else _standing(moment, rotation.pose)
     wedging = replace(settings, method="wedge")
     first = max([workshop.stock.largest_id, *(wedge.id for wedge in moment.wall.wedges)]) + 1
-    stock = WedgeStock(first, workshop.stock.mean_height_px)
-    cut = make_stable(occupied, trial.pose, "left", workshop.book, stock, wedging).stabilised
+    stock = stabilise.WedgeStock(first, workshop.stock.mean_height_px)
+    cut = stabilise.make_stable(
+        occupied, trial.pose, "left", workshop.book, stock, wedging
+    ).stabilised
     wedged = None if cut is None else _standing(moment, trial.pose, cut.wedges)
     return Unstable(moment, trial, turned, rotation.pivots, wedged)
 
@@ -201,10 +196,10 @@ def _standing(moment: Moment, pose: Pose, wedges: tuple[Wedge, ...] = ()) -> Sup
     scene = moment.wall.occupied.copy()
     for wedge in wedges:
         scene[wedge.window] |= wedge.mask
-    support = support_polyline(scene, *pose)
+    support = stabilise.support_polyline(scene, *pose)
     if support is None:
         return None
-    falls = falling_side(support, pose, moment.settings.stabilise)
+    falls = stabilise.falling_side(support, pose, moment.settings.stabilise)
     return SupportedStone(pose, support, falls, wedges, len(scene))
 
 

@@ -13,8 +13,7 @@ from drystone.model.wall import Wall
 from drystone.selection.policies.table1 import MARKS
 from drystone_lab import timed_walls
 from drystone_lab.paired import median_of
-from drystone_lab.pictures.charts import group_panels
-from drystone_lab.pictures.walls import TitledWall, plot_walls
+from drystone_lab.pictures import TitledWall, group_panels, plot_walls
 from drystone_lab.reproduce import cells
 from drystone_lab.runs.outcome import Runner, RunOutcome
 from drystone_lab.runs.spec import Changes, RunSpec
@@ -127,7 +126,7 @@ class Study:
         walls = tuple(wall.here(context.data) for wall in walls)
         count = self.quick_seeds if context.quick else self.seeds
         seeds = range(context.seed, context.seed + count)
-        return built(context, walls, self.ways, seeds)
+        return StudyWalls.built(context, walls, self.ways, seeds)
 
 
 def _targets(names: Sequence[str]) -> Iterator[Target]:
@@ -168,7 +167,7 @@ class Trials:
         """How many walls have all stones."""
         return sum(o.figures["placed"] == o.figures["stones"] for o in self.outcomes)
 
-    def cells(self, name: str) -> tuple[Cell, ...]:
+    def told(self, name: str) -> tuple[Cell, ...]:
         """Return what is told of all walls: of the set, medians of figures, or their summary."""
         if name == "<summary>":
             return cells.summary(self.outcomes)
@@ -178,12 +177,18 @@ class Trials:
             return (getattr(self.wall, name),)
         return (cells.rounded(self.median(name)),)
 
-    def cells_of(self, which: int, name: str) -> tuple[Cell, ...]:
-        """Return what is told of one wall: its seed, a figure, its metrics, or that of the set."""
+    def told_of(self, which: int, name: str) -> tuple[Cell, ...]:
+        """Return what is told of one wall: its seed, a figure, its metrics, or that of the set.
+
+        A figure may be followed by what it is to be above, as in ``F_SF > 0.6``.
+        """
         if name == "<metrics>":
             return cells.metric_cells(self.outcomes[which])
         own = {"seed": self.specs[which].seed, **self.outcomes[which].figures}
-        return (own[name],) if name in own else self.cells(name)
+        figure, _, least = name.partition(" > ")
+        if least:
+            return ((own[figure] or 0.0) > float(least),)
+        return (own[name],) if name in own else self.told(name)
 
     @property
     def middle(self) -> int:
@@ -198,6 +203,24 @@ class StudyWalls:
 
     context: Context
     all: tuple[Trials, ...]
+
+    @classmethod
+    def built(
+        cls,
+        context: Context,
+        walls: Sequence[Target],
+        ways: Mapping[str, Changes],
+        seeds: Sequence[int],
+    ) -> "StudyWalls":
+        """Build walls of every set, by every way, from every seed."""
+        asked = [
+            (wall, way, tuple(wall.run(seed, *changes) for seed in seeds))
+            for wall in walls
+            for way, changes in ways.items()
+        ]
+        outcomes = iter(context.run([spec for *_, specs in asked for spec in specs]))
+        trials = [Trials(*one, tuple(next(outcomes) for _ in one[-1])) for one in asked]
+        return cls(context, tuple(trials))
 
     def __iter__(self) -> Iterator[Trials]:
         return iter(self.all)
@@ -261,20 +284,6 @@ class StudyWalls:
         return ItemFigure(name, plot_walls(walls, columns))
 
 
-def built(
-    context: Context, walls: Sequence[Target], ways: Mapping[str, Changes], seeds: Sequence[int]
-) -> StudyWalls:
-    """Build walls of every set, by every way, from every seed."""
-    asked = [
-        (wall, way, tuple(wall.run(seed, *changes) for seed in seeds))
-        for wall in walls
-        for way, changes in ways.items()
-    ]
-    outcomes = iter(context.run([spec for *_, specs in asked for spec in specs]))
-    trials = [Trials(*one, tuple(next(outcomes) for _ in one[-1])) for one in asked]
-    return StudyWalls(context, tuple(trials))
-
-
 def rows_of(words: Mapping[str, Any], found: StudyWalls) -> Rows:
     """Return the rows that words ask for.
 
@@ -283,9 +292,9 @@ def rows_of(words: Mapping[str, Any], found: StudyWalls) -> Rows:
     """
     for one in found:
         if "medians" in words:
-            yield tuple(cell for name in words["medians"] for cell in one.cells(name))
+            yield tuple(cell for name in words["medians"] for cell in one.told(name))
         for k in range(len(one.specs) if "walls" in words else 0):
-            yield tuple(cell for name in words["walls"] for cell in one.cells_of(k, name))
+            yield tuple(cell for name in words["walls"] for cell in one.told_of(k, name))
     way, *others = words.get("pairs", ("",))
     for other in others:
         for figure in cells.METRICS:

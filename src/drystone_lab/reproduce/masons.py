@@ -1,6 +1,6 @@
 """The masons' walls: Fig. 13, gaps closed (§5.1); Table 2, Figs. 17 and 18, beside ours (§5.2)."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import floor
@@ -24,10 +24,11 @@ from drystone.model.stone import StoneSet
 from drystone.model.wall import Labels
 from drystone.poses import PoseBook
 from drystone.statics.limit import lateral_resistance
-from drystone_lab.pictures import walls as sheets
+from drystone_lab import pictures as sheets
 from drystone_lab.reproduce import cells
 from drystone_lab.reproduce.cells import METRICS, rounded
 from drystone_lab.reproduce.item import Context, ItemFigure, PaperItem, StudyWalls, Trials
+from drystone_lab.reproduce.items import ITEMS
 from drystone_lab.runs.outcome import RunOutcome
 from drystone_lab.table import Cell, Rows
 from drystone_lab.walls import MASONS, PR, Target
@@ -93,22 +94,11 @@ def _distance(place: NDArray[np.floating], labels: Labels) -> float:
     return float(np.hypot(labels.shape[0] - 0.5 - place[0], place[1] + 0.5))
 
 
-Printed = tuple[float, float, float, float]
-"""A half row of Table 2: F_SF (a share), F_AV and F_AH (percent), F_LR."""
-
-REFERENCES: Mapping[int, Printed] = {
-    1: (0.837, 39.780, 0.000, 0.64), 2: (0.883, 40.810, 0.830, 0.48),
-    3: (0.957, 22.410, 3.440, 0.26), 4: (0.800, 6.765, 1.707, 0.60),
-    5: (0.753, 15.783, 6.767, 0.05),
-}  # fmt: skip
-"""Reference walls of Table 2 by number: masons' (1 to 3), of a model-free algorithm (4, 5)."""
-
-CONSTRUCTED: Mapping[int, Printed] = {
-    1: (0.974, 39.084, 1.573, 0.83), 2: (0.883, 36.598, 1.348, 0.83),
-    3: (0.839, 21.347, 4.163, 0.52), 4: (0.839, 22.674, 2.207, 0.66),
-    5: (0.725, 55.851, 3.033, 0.59),
-}  # fmt: skip
-"""Walls that the paper's algorithm built, the best of 20 trials."""
+REFERENCES, CONSTRUCTED = (
+    {number: tuple(figures) for number, figures in enumerate(walls, 1)}
+    for walls in ITEMS["table2"]["printed"].values()
+)
+"""Figures of Table 2 by number of the wall."""
 
 PAPERS_WAY = "drawn together and dilated (the paper's way)"
 

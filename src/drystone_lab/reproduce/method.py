@@ -1,16 +1,26 @@
-"""The method itself: Table 1, and Figs. 3, 4, 10 and 11 on a real run."""
+"""The method itself: Table 1, and Figs. 3, 4, 10, 11 and 12 on a real run."""
 
-from collections.abc import Iterator, Mapping
+from collections import defaultdict
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
 from itertools import islice
 from types import SimpleNamespace
 from typing import NamedTuple
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from drystone.contacts.blocks import model_from_labels
-from drystone.drawing.palette import CLUSTER_COLOURS
-from drystone.drawing.pictures.forces import plot_forces
+from drystone.drawing.canvas import draw_legend
+from drystone.drawing.drawing import Lines
+from drystone.drawing.palette import CLUSTER_COLOURS, PALE
+from drystone.drawing.pictures.forces import JOINT, NORMAL, plot_contacts, plot_forces
+from drystone.drawing.pictures.stones import plot_labels
+from drystone.kernels.boundary import EMPTY, boundary_of
 from drystone.model.site import Site
 from drystone.model.wall import Labels, Wall
 from drystone.planner.attempt import Attempt
@@ -21,30 +31,19 @@ from drystone.selection.algorithm2 import Selected, select_action, weighted_sum
 from drystone.selection.policies.table1 import ENGINE, MARKS
 from drystone.selection.sampling import sample_stones
 from drystone.statics.limit import lateral_resistance
-from drystone.statics.model import RigidBlockModel
+from drystone.statics.model import GROUND, Interface, RigidBlockModel
 from drystone.statics.result import LateralResistance
-from drystone_lab.pictures.walls import plot_walls, sheet_of, stones_panel, wall_panel
+from drystone_lab import pictures
 from drystone_lab.reproduce.cells import rounded
 from drystone_lab.reproduce.construction import Construction, construction
 from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem
+from drystone_lab.reproduce.items import ITEMS
 from drystone_lab.table import Rows
 from drystone_lab.walls import PR, Target
 
-ROWS: Mapping[str, tuple[str, int, tuple[str, ...]]] = {
-    "packing": ("tight packing", 6, ("paper",)),
-    "course": ("straight course", 3, ("paper",)),
-    "interlocking": ("interlocking", 4, ("paper", "thangavelu")),
-    "wedging": ("wedging", 1, ("paper",)),
-    "footing": ("stable footing", 3, ()),
-    "sloping": ("inward sloping", 4, ("paper", "liu2021")),
-    "gravity": ("gravity", 6, ("paper", "johns", "liu2021")),
-    "lateral": ("lateral load", 3, ("paper", "thangavelu", "liu2018")),
-}
-"""Rows of Table 1: name, number of marks, and whose they are as far as the text says it."""
-
 
 def _table1(_: object) -> Rows:
-    for part, (name, count, said) in ROWS.items():
+    for name, (part, count, *said) in ITEMS["table1"]["marks"].items():
         whose = (
             ["paper"] * (policy in said) + ["ours"] * (part in MARKS[policy]) for policy in MARKS
         )
@@ -76,13 +75,13 @@ def _workflow(run: Construction) -> Iterator[ItemFigure]:
         (f"after {number} stones", run.stages[number - 1].after, run.workshop.clusters)
         for number in sorted({1, max(1, count // 3), max(1, 2 * count // 3), count})
     ]
-    yield ItemFigure("fig3", plot_walls(walls, 2), {"placed": count, "count": len(stones)})
+    yield ItemFigure("fig3", pictures.plot_walls(walls, 2), {"placed": count, "count": len(stones)})
     free = "the landscape before the first stone: free between its bounds"
     panels = [
-        stones_panel("the stones", stones, run.workshop.clusters),
-        wall_panel(free, Wall.empty(run.wall.site), {}),
+        pictures.stones_panel("the stones", stones, run.workshop.clusters),
+        pictures.wall_panel(free, Wall.empty(run.wall.site), {}),
     ]
-    yield ItemFigure("fig4", sheet_of(panels, 2))
+    yield ItemFigure("fig4", pictures.sheet_of(panels, 2))
 
 
 WORKFLOW = PaperItem(study=construction, tables={"steps": _steps}, pictures=_workflow)
@@ -200,4 +199,153 @@ RIGID = PaperItem(
     claims=_two_claims,
     tables={"forces": _contact_forces},
     pictures=lambda found: [_two_picture(found)],
+)
+
+
+NORMAL_PX = 2.5
+"""Length of the normal of a pixel edge."""
+
+
+def plot_boundary_edges(
+    ax: Axes, labels: Labels, starts: NDArray[np.floating], ends: NDArray[np.floating]
+) -> None:
+    """Draw the pixel edges on which blocks touch, each with its normal.
+
+    `starts` and `ends` are (n, 2), px, y up from the ground; the normal is to the left of the way.
+    """
+    pictures.plot_landscape(ax, labels, PALE, ground=0.06, framed=False)
+    ax.set_axis_off()
+    way = ends - starts
+    normals = np.column_stack([-way[:, 1], way[:, 0]])
+    middles = (starts + ends) / 2.0
+    edges = np.stack([starts, ends], axis=1)
+    arrows = np.stack([middles, middles + NORMAL_PX * normals], axis=1)
+    looks = (edges, JOINT, 1.6, "edges"), (arrows, NORMAL, 0.6, "normals")
+    for lines, colour, thick, gid in looks:
+        drawn = LineCollection(list(lines), colors=colour, linewidths=thick, gid=gid, zorder=4)
+        ax.add_collection(drawn, autolim=False)
+    legend = {
+        "pixel edge between blocks": Lines("", [], JOINT, 1.6),
+        "its normal": Lines("", [], NORMAL, 0.8),
+    }
+    draw_legend(ax, legend)
+
+
+@dataclass(frozen=True, eq=False)
+class Blocks:
+    """Three stones of a wall as pixels, edges and rigid blocks; and the model of the whole."""
+
+    wall: Target
+    labels: Labels
+    model: RigidBlockModel
+    whole: RigidBlockModel
+
+    @cached_property
+    def edges(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Pixel edges between two of them or one and the ground: starts and ends."""
+        return boundary_edges(self.labels)
+
+
+def blocks(context: Context, wall: Target = PR) -> Blocks:
+    """Take three stones of a wall to rigid blocks."""
+    built = context.wall(wall.run(context.seed))
+    labels = three_stones(built)
+    model, whole = (model_from_labels(each).model for each in (labels, built.labels))
+    return Blocks(wall, labels, model, whole)
+
+
+def three_stones(wall: Wall) -> Labels:
+    """Return the picture of three stones of a wall: two on the ground, and one on both."""
+    touches: dict[int, set[int]] = defaultdict(set)
+    for interface in model_from_labels(wall.labels).model.interfaces:
+        touches[interface.block].add(interface.other)
+        touches[interface.other].add(interface.block)
+    order = [placement.stone_id for placement in wall.placements]
+    on_ground = [stone for stone in order if GROUND in touches[stone]]
+    group = set(order[:3])
+    for top in order:
+        below = sorted(touches[top].intersection(on_ground), key=order.index)
+        if top not in on_ground and len(below) >= 2:
+            group = {top, *below[:2]}
+            break
+    kept = np.where(np.isin(wall.labels, sorted(group)), wall.labels, 0).astype(np.uint32)
+    rows, cols = (np.flatnonzero((kept > 0).any(axis=axis)) for axis in (1, 0))
+    # A margin of 2 px is above, left and right of the stones only: they stand on the last row.
+    inside = np.pad(kept, ((2, 0), (2, 2)))
+    return inside[rows[0] : rows[-1] + 3, cols[0] : cols[-1] + 5]
+
+
+def boundary_edges(labels: Labels) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return the pixel edges between two stones or a stone and the ground.
+
+    >>> starts, ends = boundary_edges(np.array([[5], [3]]))
+    >>> starts.tolist(), ends.tolist()
+    ([[0.0, 0.0], [0.0, 1.0]], [[1.0, 0.0], [1.0, 1.0]])
+    """
+    height, width = labels.shape
+    cells = np.full((height + 1, width), GROUND, np.int64)
+    cells[:-1] = np.where(labels > 0, labels.astype(np.int64), EMPTY)
+    boundary = boundary_of(cells)
+    points = np.column_stack([boundary.nodes[:, 1], height - boundary.nodes[:, 0]]).astype(float)
+    last = boundary.begins[1:] - 1
+    return np.delete(points, last, axis=0), np.delete(points, boundary.begins[:-1], axis=0)
+
+
+def _mean_normal(interface: Interface) -> NDArray[np.float64]:
+    # The mean over its pixel edges, each turned by a quarter: their sum is the way from end to
+    # end, turned.
+    way = interface.points[-1] - interface.points[0]
+    normal = np.array([-way[1], way[0]]) / np.hypot(*way)
+    return np.asarray(normal if normal @ np.array(interface.normal) >= 0 else -normal)
+
+
+def _apart_deg(interface: Interface) -> float:
+    cosine = float(_mean_normal(interface) @ np.array(interface.normal))
+    return float(np.degrees(np.arccos(min(1.0, cosine))))
+
+
+def _interfaces(found: Blocks) -> Rows:
+    for interface in found.model.interfaces:
+        long = len(interface.points) == 2
+        ends = [*interface.points[0].tolist(), *interface.points[-1].tolist()]
+        yield (
+            interface.block, interface.other or "ground", *ends, round(interface.length, 4),
+            *(round(value, 4) for value in interface.normal),
+            round(_apart_deg(interface), 3) if long else None,
+        )  # fmt: skip
+
+
+def _picture(found: Blocks) -> ItemFigure:
+    labels, model = found.labels, found.model
+    figure = Figure(figsize=(6.4, 7.5), layout="constrained")
+    first, second, third = figure.subplots(3, 1)
+    plot_labels(labels, first, title="(a) labels")
+    plot_boundary_edges(second, labels, *found.edges)
+    second.set_title("(b) edges between blocks, and their normals", fontsize=9, loc="left")
+    plot_contacts(labels, model, third)
+    for block in model.blocks:
+        gid = f"centre-{block.id}"
+        third.plot(*block.centroid, "^", color="#0072b2", markersize=7, gid=gid, zorder=5)
+    third.set_title("(c) rigid blocks", fontsize=9, loc="left")
+    return ItemFigure("fig12", figure)
+
+
+def _claims(found: Blocks) -> Iterator[Claimed]:
+    angles = [_apart_deg(i) for i in found.whole.interfaces if len(i.points) == 2]
+    tilted = sum(angle > 1.0 for angle in angles)
+    values = {"tilted": tilted, "count": len(angles), "most": max(angles)}
+    yield Claimed("normal", None, values)
+
+
+PIC_TO_RI = PaperItem(
+    study=blocks,
+    claims=_claims,
+    tables={
+        "blocks": lambda found: [
+            (block.id, block.area, *(round(value, 4) for value in block.centroid))
+            for block in found.model.blocks
+        ],
+        "interfaces": _interfaces,
+    },
+    pictures=lambda found: [_picture(found)],
 )

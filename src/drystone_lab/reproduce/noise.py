@@ -15,10 +15,10 @@ from drystone.metrics.frame import reduce_labels
 from drystone.metrics.measure import WallMetrics, measure_labels
 from drystone.model.wall import Labels
 from drystone.statics.limit import lateral_resistance
-from drystone_lab.pictures import charts
-from drystone_lab.pictures.walls import plot_walls
+from drystone_lab import pictures
+from drystone_lab.pictures import plot_walls
 from drystone_lab.reproduce.cells import LEVEL, METRICS, figures_of, rounded, trend
-from drystone_lab.reproduce.item import Claimed, ItemFigure, PaperItem, StudyWalls, Trials, rows_of
+from drystone_lab.reproduce.item import Claimed, ItemFigure, PaperItem, StudyWalls, Trials
 from drystone_lab.runs.outcome import RunOutcome
 from drystone_lab.table import Rows
 from drystone_lab.walls import NOISES, Target, generated_noise
@@ -219,7 +219,7 @@ def _scatter(levels: NoiseLevels) -> ItemFigure:
         )
         for level in levels
     }
-    ax = charts.plot_two_figures(groups, across="F_LR", up="F_SF")
+    ax = pictures.plot_two_figures(groups, across="F_LR", up="F_SF")
     ax.margins(0.09)
     offsets_pt = cycle(((9, 9), (9, -14), (-18, 9), (-18, -14)))  # neighbours lie together
     for level, offset in zip(levels, offsets_pt, strict=False):
@@ -259,7 +259,7 @@ SHIFTS = (0.0, 1.4, -1.4, 2.8, -2.8)
 
 def _over_noise(levels: NoiseLevels) -> ItemFigure:
     """Draw the four figures over the noise, with one legend above."""
-    sheet, axes = charts.panel_sheet(len(METRICS), 2, (3.9, 2.8))
+    sheet, axes = pictures.panel_sheet(len(METRICS), 2, (3.9, 2.8))
     for ax, name in zip(axes, ("F_SF", "F_LR", "F_AV", "F_AH"), strict=True):
         for (words, look), pairs in zip(SERIES.items(), _series(levels, name), strict=True):
             seen: Counter[int] = Counter()
@@ -270,7 +270,7 @@ def _over_noise(levels: NoiseLevels) -> ItemFigure:
                     y.append(value)
                     seen[noise] += 1
             ax.plot(x, y, label=words, gid=words, **look)
-        charts.name_axes(ax, "noise, %", name if name in {"F_SF", "F_LR"} else f"{name}, %")
+        pictures.name_axes(ax, "noise, %", name if name in {"F_SF", "F_LR"} else f"{name}, %")
         ax.grid(axis="y", color=GREY, linewidth=0.3, alpha=0.5)
         ticks = [f"{one.noise}{'*' * one.ours.wall.stand_in}" for one in levels]
         ax.set_xticks([level.noise for level in levels], ticks)
@@ -295,18 +295,10 @@ def _series(levels: NoiseLevels, name: str) -> list[list[tuple[int, float | None
     return [full, poor, published, random]
 
 
-def _walls(levels: NoiseLevels) -> Rows:
-    cells = {"walls": ("number", "said", "way", "seed", "placed", "stones", "<metrics>")}
-    for level in levels:
-        outcomes = (outcome for one in level.built for outcome in one.outcomes)
-        for row, outcome in zip(rows_of(cells, level.built), outcomes, strict=True):
-            yield *row, is_full(outcome)
-
-
 NOISE = PaperItem(
     then=noise_levels,
     claims=noise_findings,
-    tables={"reference": _references, "walls": _walls},
+    tables={"reference": _references},
     pictures=_noise_pictures,
 )
 

@@ -9,18 +9,9 @@ from typing import NamedTuple
 from scipy.stats import mannwhitneyu
 
 from drystone.model.wall import Wall
-from drystone_lab.pictures.charts import plot_two_figures
-from drystone_lab.pictures.walls import plot_walls
+from drystone_lab.pictures import plot_two_figures, plot_walls
 from drystone_lab.reproduce.cells import LEVEL, figures_of, metric_cells, placed_of
-from drystone_lab.reproduce.item import (
-    Claimed,
-    Context,
-    ItemFigure,
-    PaperItem,
-    StudyWalls,
-    Trials,
-    built,
-)
+from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem, StudyWalls, Trials
 from drystone_lab.runs.spec import Changes, generated, published
 from drystone_lab.table import Rows
 from drystone_lab.walls import TWO_SIDED, Target
@@ -209,7 +200,7 @@ def brick_walls(context: Context, size: tuple[int, int] | None = None) -> Bricks
     width, courses = size or (QUICK_SIZE if context.quick else FULL_SIZE)
     walls = [_brick_wall(aspect, width, courses).here(context.data) for aspect in ASPECTS]
     sides: Mapping[str, Changes] = {"one side": (), "two sides": TWO_SIDED}
-    found = built(context, walls, sides, (context.seed,))
+    found = StudyWalls.built(context, walls, sides, (context.seed,))
     return [
         (aspect, one, found.wall(one))
         for side in sides

@@ -15,11 +15,10 @@ from drystone.planner.settings import method_settings
 from drystone.poses import PoseBook
 from drystone.selection.sampling import Sampling
 from drystone_lab import timed_walls
-from drystone_lab.pictures.charts import plot_growth, step_time_panels
-from drystone_lab.pictures.walls import plot_walls
+from drystone_lab.pictures import plot_growth, plot_walls, step_time_panels
 from drystone_lab.reproduce.cells import metric_cells, placed_of, trend
-from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem, StudyWalls, built
-from drystone_lab.table import Cell, Rows
+from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem, StudyWalls
+from drystone_lab.table import Rows
 from drystone_lab.timed_walls import SAMPLINGS, TimedWall, fitted, parts_ms, three_digits
 from drystone_lab.walls import PR, Target
 
@@ -40,11 +39,6 @@ class StepWalls(NamedTuple):
     walls: BySampling
     name: str
     data: Path | None
-
-    @property
-    def size(self) -> str:
-        """Of the wall, px."""
-        return self.walls["variant"].size
 
 
 PROCEDURES: Mapping[str, tuple[Part, ...]] = {
@@ -149,15 +143,11 @@ def _trend_words(pairs: Sequence[tuple[float, float | None]]) -> str:
     return "" if found is None else f", {found.words()}"
 
 
-BIN = 8
-"""Stones in a row of the table."""
-
-
 def step_rows(walls: BySampling) -> Rows:
-    """Return the times of steps by stones placed, and how those of a candidate grow."""
+    """Return the times of steps by eight stones placed, and how those of a candidate grow."""
     for sampling, wall in walls.items():
-        for first in range(0, len(wall.steps), BIN):
-            steps = wall.steps[first : first + BIN]
+        for first in range(0, len(wall.steps), 8):
+            steps = wall.steps[first : first + 8]
             candidates = fmean(step.candidates for step in steps)
             parts = parts_ms(steps)
             stones = f"{first} to {first + len(steps) - 1}"
@@ -193,11 +183,9 @@ STEPS = PaperItem(
 PUBLISHED = "PR"
 """Name of the stones of the paper."""
 
-PAPER_WALL_S = {140 * 40: 0.18 * 60}
-"""By pixels.  §6.3: 32 stones in .18 minutes at 140 x 40 px."""
-
-PAPER_STEP_S = {560 * 160: 25.0}
-"""By pixels.  §6.3: at the highest resolution no step takes longer."""
+PAPER_S = {"whole wall": {140 * 40: 0.18 * 60}, "longest step": {560 * 160: 25.0}}
+"""By pixels.  §6.3: 32 stones in .18 minutes at 140 x 40 px; at the highest resolution no step
+takes longer."""
 
 
 class ScaledWalls(NamedTuple):
@@ -212,17 +200,17 @@ def by_scale(
 ) -> ScaledWalls:
     """Plan a wall at several resolutions."""
     walls = {scale: replace(wall, scale=scale * wall.scale) for scale in scales}
-    found = built(context, tuple(walls.values()), {"variant": ()}, (context.seed,))
+    found = StudyWalls.built(context, tuple(walls.values()), {"variant": ()}, (context.seed,))
     return ScaledWalls(found, {scale: timed(context, one, {}) for scale, one in walls.items()})
 
 
 def scale_findings(walls: Mapping[float, TimedWall]) -> Iterator[Claimed]:
     """Compare times with what §6.3 says of them."""
-    measures = (
-        ("whole wall", {scale: wall.seconds for scale, wall in walls.items()}, PAPER_WALL_S),
-        ("longest step", {scale: wall.longest for scale, wall in walls.items()}, PAPER_STEP_S),
-    )
-    for what, seconds, _ in measures:
+    measures = {
+        "whole wall": {scale: wall.seconds for scale, wall in walls.items()},
+        "longest step": {scale: wall.longest for scale, wall in walls.items()},
+    }
+    for what, seconds in measures.items():
         if (law := fitted(list(seconds.items()))) is None:
             yield Claimed("few", None, {"what": what})
         else:
@@ -230,8 +218,8 @@ def scale_findings(walls: Mapping[float, TimedWall]) -> Iterator[Claimed]:
             near = abs(law.exponent - 2.0) <= 0.5
             yield Claimed("quadratic", near, {"what": what, "power": law.exponent})
     for scale, wall in walls.items():
-        for what, seconds, papers in measures:
-            if (said := papers.get(wall.pixels)) is not None:
+        for what, seconds in measures.items():
+            if (said := PAPER_S[what].get(wall.pixels)) is not None:
                 took = seconds[scale]
                 values = {"size": wall.size, "what": what, "said": said, "seconds": took}
                 yield Claimed("seconds", took <= said, values)
@@ -244,9 +232,7 @@ def pixel_rows(name: str, by_scale: Mapping[float, TimedWall]) -> Rows:
     """
     walls = by_scale.values()
     for wall in walls:
-        said: tuple[Cell, Cell] = (None, None)
-        if name == PUBLISHED:
-            said = PAPER_WALL_S.get(wall.pixels), PAPER_STEP_S.get(wall.pixels)
+        said = [s.get(wall.pixels) if name == PUBLISHED else None for s in PAPER_S.values()]
         candidates = fmean(step.candidates for step in wall.steps)
         yield three_digits(
             (wall.size, len(wall.steps), candidates, *parts_ms(wall.steps), wall.seconds, said[0],
@@ -274,10 +260,9 @@ def _scales_pictures(found: ScaledWalls) -> Iterator[ItemFigure]:
         "longest step": [(float(wall.pixels), wall.longest) for wall in found.timed.values()],
     }
     claims = []
-    if found.built.name == PUBLISHED:
-        claims += [("paper: whole wall", "x", px, s) for px, s in PAPER_WALL_S.items()]
-        claims += [("paper: longest step, below", "v", px, s) for px, s in PAPER_STEP_S.items()]
-    plot_growth(figure.add_subplot(), series, claims)
+    for what, marker, how in (("whole wall", "x", ""), ("longest step", "v", ", below")):
+        claims += [(f"paper: {what}{how}", marker, px, s) for px, s in PAPER_S[what].items()]
+    plot_growth(figure.add_subplot(), series, claims if found.built.name == PUBLISHED else ())
     yield ItemFigure("fig29-time", figure)
 
 
@@ -298,9 +283,6 @@ RESOLUTION = PaperItem(
     },
     pictures=_scales_pictures,
 )
-
-WALL_PX = (420, 120)
-"""Of every wall; more stones are smaller ones, so that a candidate always has as many pixels."""
 
 SIZES = (16, 32, 64, 128), (0.05, 0.1, 0.4, 1.0)
 QUICK_SIZES = (8, 16, 32), (0.1, 0.4)
@@ -329,7 +311,8 @@ def by_stones(
     asked += [("variant", distance, numbers[-1]) for distance in distances]
     walls = []
     for sampling, distance, count in asked:
-        wall = timed_walls.rubble(count, context.seed, WALL_PX)
+        # More stones are smaller ones, so that a candidate always has as many pixels.
+        wall = timed_walls.rubble(count, context.seed, (420, 120))
         changes = {"sampling": sampling, "clusters": {"distance": distance}}
         settings = method_settings("paper").updated(changes)
         clusters = cluster_stones(wall.source.stones(None), PoseBook(), settings.clusters)

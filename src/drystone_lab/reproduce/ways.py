@@ -1,14 +1,214 @@
-"""Items that compare settings: beta, Fig. 16, Fig. 20, Fig. 21, Figs. B.30 to B.32."""
+"""Walls of §5.1 and §5.2 and B.1: the base case PR, how it fails, wedges, and settings compared."""
 
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
+from functools import partial
+from itertools import accumulate
+from statistics import fmean
+from typing import NamedTuple
 
+from matplotlib.axes import Axes
+
+from drystone.contacts.blocks import model_from_labels
+from drystone.drawing.outlines import Bounds
+from drystone.drawing.palette import OUTLINE_COLOUR
+from drystone.drawing.pictures.mechanism import plot_mechanism
+from drystone.drawing.pictures.wall import plot_wall
+from drystone.model.placement import Wedge
+from drystone.model.wall import Wall
+from drystone.statics.failing.mechanism import Names, describe_mechanism
+from drystone.statics.flow.nonassociative import NonassociativeResult, nonassociative_resistance
+from drystone.statics.limit import lateral_resistance
+from drystone.statics.model import RigidBlockModel
+from drystone.statics.result import LimitResult, LimitStatus
 from drystone_lab import walls
-from drystone_lab.pictures.charts import group_panels, plot_two_figures
-from drystone_lab.reproduce.cells import METRICS
-from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem, StudyWalls, built
+from drystone_lab.paired import median_of
+from drystone_lab.pictures import Panel, group_panels, plot_two_figures, sheet_of, wall_aspect
+from drystone_lab.reproduce import cells
+from drystone_lab.reproduce.cells import METRICS, rounded
+from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem, StudyWalls, Trials
 from drystone_lab.runs.spec import Changes
+from drystone_lab.table import Rows
 from drystone_lab.walls import IR, PR, TWO_SIDED, R, Target
+
+ALPHAS: Mapping[str, float] = {"left": 0.79, "right": 0.71}
+"""Load multipliers of §5.1, tilting towards that side."""
+
+
+class BaseCase(NamedTuple):
+    """Walls of several seeds, and the mechanisms of the first by both flow rules."""
+
+    built: StudyWalls
+    trials: Trials
+    wall: Wall
+    model: RigidBlockModel
+    # Flow rule and result, both rules of the left side first
+    mechanisms: tuple[tuple[str, LimitResult | NonassociativeResult], ...]
+
+    def over_mu(self, side: str) -> list[float]:
+        """Return the load multipliers of all walls towards a side, over mu."""
+        return [a / self.model.mu for a in cells.figures_of(self.trials.outcomes, f"alpha_{side}")]
+
+
+def base_case(found: StudyWalls) -> BaseCase:
+    """Look at the mechanisms of the first wall."""
+    (trials,) = found
+    wall = found.wall(trials)
+    model = model_from_labels(wall.labels, trials.specs[0].settings().mu).model
+    both = lateral_resistance(model, mechanism=True)
+    without = nonassociative_resistance(model)
+    mechanisms = (
+        ("associative", both.left), ("without dilatancy", without.left),
+        ("associative", both.right), ("without dilatancy", without.right),
+    )  # fmt: skip
+    return BaseCase(found, trials, wall, model, mechanisms)
+
+
+def _summary(case: BaseCase) -> Rows:
+    row = [*cells.summary(case.trials.outcomes)]
+    for side, papers in ALPHAS.items():
+        found = case.over_mu(side)
+        words = f"{min(found):.2f} to {max(found):.2f}" if found else None
+        row += [rounded(median_of(found)), words, papers]
+    yield tuple(row)
+
+
+def _rules(case: BaseCase) -> Rows:
+    wedges = frozenset(wedge.id for wedge in case.wall.wedges)
+    for rule, result in case.mechanisms:
+        over = None if result.alpha is None else rounded(result.alpha / case.model.mu)
+        papers = ALPHAS[result.direction] if rule == "associative" else None
+        words = None
+        if result.mechanism is not None:
+            falls = result.status is LimitStatus.UNSTABLE
+            names = Names("stone", wedges)
+            words = describe_mechanism(case.model, result.mechanism, falls=falls, names=names).words
+        alpha = rounded(result.alpha)
+        yield result.direction, rule, str(result.status), alpha, over, papers, words
+
+
+def _pictures(case: BaseCase) -> Iterator[ItemFigure]:
+    title = f"{case.built.name}, seed {case.built.seeds[0]}"
+    yield case.built.sheet("fig14", 1, title)
+    for rule, result in case.mechanisms:
+        if result.mechanism is not None:
+            falls = result.status is LimitStatus.UNSTABLE
+            towards = None if falls else result.direction
+            ax = plot_mechanism(case.wall.labels, result.mechanism, towards, result.alpha)
+            loose = rule != "associative"
+            name = f"fig15_{result.direction}{'_coulomb' * loose}"
+            about = (result.direction, "no dilatancy" if loose else rule)
+            yield ItemFigure(name, ax.figure, about)
+    metrics: dict[str, dict[str, Sequence[float | None]]] = {
+        "alpha / mu": {side: case.over_mu(side) for side in ALPHAS},
+        **{name: {case.built.name: case.trials.values(name)} for name in ("F_SF", "F_AV", "F_AH")},
+    }
+    yield ItemFigure("fig14_seeds", group_panels(metrics, claims={"alpha / mu": ALPHAS}))
+
+
+BASE_CASE = PaperItem(
+    then=base_case,
+    tables={"fig14": _summary, "fig15": _rules},
+    pictures=_pictures,
+)
+
+ZOOM_ASPECT = 0.6
+
+
+def _wedges_claims(found: StudyWalls) -> Iterator[Claimed]:
+    for one in found:
+        wall, figures = found.wall(one), one.outcomes[0].figures
+        area = float(figures["wedge_area"] or 0.0)
+        tallest = max((wedge.mask.shape[0] for wedge in wall.wedges), default=0)
+        values = {
+            "number": one.wall.number, "name": one.wall.name, "count": len(wall.wedges),
+            "under": len({wedge.under for wedge in wall.wedges}), "placed": figures["placed"],
+            "share": 100 * area / (one.wall.width * one.wall.height),
+            "tallest": tallest / fmean(stone.posed.height_px for stone in wall.placements),
+        }  # fmt: skip
+        yield Claimed("needed", bool(wall.wedges), values)
+
+
+def _wedges(found: StudyWalls) -> Rows:
+    for one in found:
+        wall = found.wall(one)
+        unit = 1 / wall.site.scale
+        mean = fmean(stone.posed.height_px for stone in wall.placements)
+        for wedge in wall.wedges:
+            height, width = wedge.mask.shape
+            sizes = (width * unit, height * unit, wedge.area_px * unit**2, height / mean)
+            yield one.wall.number, wedge.id, wedge.under, *map(rounded, sizes)
+
+
+def _wedges_picture(trials: Trials, wall: Wall) -> ItemFigure:
+    zoomed = [
+        (letter, wedge, _box(wall, wedge))
+        for letter, wedge in zip("abc", shown(wall), strict=False)
+    ]
+    title = f"Wall {trials.wall.number}, {trials.wall.name}\n"
+    title += cells.in_words(trials.outcomes[0].figures)
+    aspect = wall_aspect(wall.site.height_px / wall.site.width_px)
+    sizes = accumulate((1 + len(group.wedges) for group in wall.groups), initial=1)
+    steps = dict(zip((group.placement.stone_id for group in wall.groups), sizes, strict=False))
+
+    def draw_whole(ax: Axes) -> None:
+        plot_wall(wall, None, ax)
+        for letter, _, (x0, y0, x1, y1) in zoomed:
+            ax.plot([x0, x1, x1, x0, x0], [y0, y0, y1, y1, y0], color=OUTLINE_COLOUR,
+                    linewidth=0.9, linestyle=":", zorder=6)  # fmt: skip
+            ax.text(
+                x0, y1, letter, fontsize=8, ha="right", va="top", zorder=7, fontweight="bold",
+                bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.8},
+            )  # fmt: skip
+
+    def draw_zoom(box: Bounds, ax: Axes) -> None:
+        plot_wall(wall, None, ax)
+        ax.set_xlim(box[0], box[2])
+        ax.set_ylim(box[1], box[3])
+
+    zooms = [
+        Panel(f"{letter}: a wedge under stone {wedge.under} (step {steps[wedge.under]})",
+              ZOOM_ASPECT, partial(draw_zoom, box))
+        for letter, wedge, box in zoomed
+    ]  # fmt: skip
+    figure = sheet_of([Panel(title, aspect, draw_whole), *zooms], 2)
+    return ItemFigure(f"fig19_wall{trials.wall.number}", figure, trials.wall)
+
+
+def shown(wall: Wall) -> list[Wedge]:
+    """Return the three largest wedges, without those that are seen beside a larger one."""
+    found: list[Wedge] = []
+    for wedge in sorted(wall.wedges, key=lambda each: (-each.area_px, each.id)):
+        x, y = _middle(wall, wedge)
+        boxes = (_box(wall, other) for other in found)
+        if not any(x0 <= x <= x1 and y0 <= y <= y1 for x0, y0, x1, y1 in boxes):
+            found.append(wedge)
+    return found[:3]
+
+
+def _middle(wall: Wall, wedge: Wedge) -> tuple[float, float]:
+    """Return the middle of a wedge in source px, y up."""
+    height, width = wedge.mask.shape
+    unit = wall.site.units_per_px
+    return (wedge.col + width / 2) * unit, (wall.site.height_px - wedge.row - height / 2) * unit
+
+
+def _box(wall: Wall, wedge: Wedge) -> Bounds:
+    """Return what a zoom on a wedge shows: a quarter of the width of the wall."""
+    x, y = _middle(wall, wedge)
+    width = wall.site.width_px * wall.site.units_per_px
+    half = 0.25 * width / 2
+    # Little of the ground and nothing beyond the ends, which are of no interest.
+    x = min(max(x, half), width - half)
+    y0 = max(y - ZOOM_ASPECT * half, -0.1 * half)
+    return x - half, y0, x + half, y0 + 2 * ZOOM_ASPECT * half
+
+
+WEDGES = PaperItem(
+    claims=_wedges_claims,
+    tables={"fig19": _wedges},
+    pictures=lambda found: [_wedges_picture(one, found.wall(one)) for one in found],
+)
 
 
 def _beta_picture(found: StudyWalls) -> ItemFigure:
@@ -50,7 +250,7 @@ def _stabilised_claims(found: StudyWalls) -> Iterator[Claimed]:
         yield Claimed("together", best == "both", {"name": group.name, "best": best})
 
 
-def _wedges_picture(group: StudyWalls, number: int) -> ItemFigure:
+def _stabilised_picture(group: StudyWalls, number: int) -> ItemFigure:
     points = {
         one.way: tuple(zip(one.values("wedge_share"), one.values("F_SF"), strict=True))
         for one in group
@@ -64,7 +264,7 @@ def _wedges_picture(group: StudyWalls, number: int) -> ItemFigure:
 STABILISATION = PaperItem(
     claims=_stabilised_claims,
     pictures=lambda found: [
-        _wedges_picture(group, number) for number, group in enumerate(found.by_wall, 1)
+        _stabilised_picture(group, number) for number, group in enumerate(found.by_wall, 1)
     ],
 )
 
@@ -91,7 +291,7 @@ CAUSES: dict[str, Changes] = {
 }  # fmt: skip
 """What might keep PR from its 32 stones; the last are the released code's rule and its own way."""
 
-VARIED: tuple[tuple[Target, Mapping[str, Changes]], ...] = (
+VARIED: tuple[tuple[Target, dict[str, Changes]], ...] = (
     (R, NAMED | RELEASED),
     (PR, NAMED | RELEASED | CAUSES),
     (walls.PR_FREE_596, RELEASED | CAUSES),
@@ -103,14 +303,16 @@ VARIED: tuple[tuple[Target, Mapping[str, Changes]], ...] = (
 
 def named_variants(
     context: Context,
-    varied: Sequence[tuple[Target, Mapping[str, Changes]]] = VARIED,
+    varied: Sequence[tuple[Target, dict[str, Changes]]] = VARIED,
     count: int = 20,
 ) -> StudyWalls:
     """Build walls by variants of the paper's method."""
     if context.quick:
         varied, count = [(wall, NAMED) for wall in walls.COARSE], 2
     seeds = range(context.seed, context.seed + count)
-    each = (built(context, (wall,), {"paper": (), **ways}, seeds) for wall, ways in varied)
+    each = (
+        StudyWalls.built(context, (wall,), {"paper": (), **ways}, seeds) for wall, ways in varied
+    )
     return StudyWalls(context, tuple(one for found in each for one in found))
 
 

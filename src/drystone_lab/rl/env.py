@@ -21,8 +21,7 @@ from drystone.model.stone import StoneSet
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.workshop import Workshop
 from drystone.selection.policies.learned import FEATURES, features
-from drystone_lab.rl.draw import DrawSettings, draw_wall
-from drystone_lab.rl.episode import ARRIVING, Episode
+from drystone_lab.rl.episode import ARRIVING, DrawSettings, Episode, draw_wall
 
 Floats32 = NDArray[np.float32]
 WallObservation = dict[str, Floats32]

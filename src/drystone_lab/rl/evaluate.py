@@ -20,8 +20,7 @@ from drystone.planner.workshop import Workshop
 from drystone.search.goal import figures_of, merit_of, possible_filling
 from drystone.selection.policies.registry import rule_of
 from drystone_lab.paired import COVERED
-from drystone_lab.rl.draw import KINDS, DrawSettings, draw_wall
-from drystone_lab.rl.episode import ARRIVING
+from drystone_lab.rl.episode import ARRIVING, KINDS, DrawSettings, draw_wall
 from drystone_lab.rl.train import HELD_OUT
 from drystone_lab.table import markdown_rows
 

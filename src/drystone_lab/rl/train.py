@@ -24,8 +24,8 @@ from drystone.selection.policies.choices import LOWEST
 from drystone.selection.policies.learned import FEATURES, ValueModel, features, learned
 from drystone.selection.policy import Offer
 from drystone.whole_files import refuse_existing
-from drystone_lab.rl.draw import DrawSettings, draw_wall
-from drystone_lab.rl.episode import ARRIVING, Episode
+from drystone_lab.commands import say
+from drystone_lab.rl.episode import ARRIVING, DrawSettings, Episode, draw_wall
 
 Floats = NDArray[np.float64]
 
@@ -216,10 +216,6 @@ def main(argv: Sequence[str] | None = None) -> int:
         parser.error("rounds and numbers of walls must be positive")
     if not 0 <= arguments.seed < HELD_OUT:
         parser.error(f"the seed must be 0 to {HELD_OUT - 1}: from there on they are held out")
-
-    def say(text: str) -> None:
-        sys.stderr.write(f"{text}\n")
-        sys.stderr.flush()
 
     try:
         # Before a minute of training.

@@ -9,9 +9,9 @@ import pytest
 from drystone.errors import InputError, UsageError
 from drystone_lab import packing
 from drystone_lab.public import bench
-from drystone_lab.public.history import history_table, medians_of
 from drystone_lab.public.store import kept_runs
 from drystone_lab.public.suites import method_named, walls_of
+from drystone_lab.public.tables import history_table, medians_of
 from drystone_lab.runs import workers
 from drystone_lab.runs.outcome import FIGURES, execute, one_by_one
 from drystone_lab.table import BenchSettings

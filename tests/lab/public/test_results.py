@@ -12,9 +12,9 @@ from scipy.stats import norm, rankdata, wilcoxon
 
 from drystone.errors import InputError, UsageError
 from drystone.io.folder_lock import locked
-from drystone_lab.public.history import drawn_history, history_table, medians_of
+from drystone_lab.public import tables
 from drystone_lab.public.store import COLUMNS, KeptRun, keep, kept_runs
-from drystone_lab.public.tables import BenchResults, compared, comparison, pair_tables
+from drystone_lab.public.tables import BenchResults
 
 RUN = KeptRun(
     run_key="a", suite="bricks", suite_version=1, wall="bricks 2:1", method="paper", settings="{}",
@@ -69,19 +69,19 @@ HISTORY = [
 
 
 def test_a_history_has_medians_by_version_oldest_first():
-    rows = history_table(medians_of(HISTORY)).records()
+    rows = tables.history_table(tables.medians_of(HISTORY)).records()
     assert [row["version"] for row in rows] == ["0.9.0", "0.10.0rc1", "0.10.0"]
     assert [row["F_SF"] for row in rows] == pytest.approx([0.6, 0.5, 0.7])
     assert [rows[0][name] for name in ("placed share", "F_LR", "runs")] == [0.75, None, 3]
     # Versions with other runs are not compared, and settings make another method.
-    assert len(history_table(medians_of(HISTORY)).notes) == 1
-    (_, warning) = history_table(medians_of(HISTORY[1:])).notes
+    assert len(tables.history_table(tables.medians_of(HISTORY)).notes) == 1
+    (_, warning) = tables.history_table(tables.medians_of(HISTORY[1:])).notes
     assert "bricks/1 paper" in warning
     other = replace(RUN, run_key="c", version="0.10.0", settings='{"sampling": "full"}')
-    methods = [one.method for one in medians_of([RUN, other])]
+    methods = [one.method for one in tables.medians_of([RUN, other])]
     assert methods == ["paper", 'paper {"sampling": "full"}']
     # A picture has a panel for each figure that is there.
-    axes = drawn_history(medians_of([*HISTORY, other])).axes
+    axes = tables.drawn_history(tables.medians_of([*HISTORY, other])).axes
     labels = ["placed share", "F_SF", "F_AV", "F_AH", "wall, s"]
     assert [(ax.get_xlabel(), ax.get_ylabel()) for ax in axes] == [("version", y) for y in labels]
     assert axes[1].lines[0].get_ydata().tolist() == pytest.approx([0.6, 0.5, 0.7])
@@ -100,7 +100,7 @@ def result(wall, method, seed, **figures):
 
 def f_sf_table(found):
     """The one pair of F_SF by row, or all, and the notes below."""
-    return next(table for table in pair_tables(found) if table.title.startswith("F_SF"))
+    return next(table for table in tables.pair_tables(found) if table.title.startswith("F_SF"))
 
 
 def results(values):
@@ -117,12 +117,12 @@ def results(values):
 def test_the_interval_is_that_of_a_mean():
     """For many pairs it is that of the normal distribution, within what 10 000 draws give."""
     noise = np.random.default_rng(1).normal(0.3, 2.0, 400)
-    found = compared(noise.tolist(), [0.0] * 400)
+    found = tables.compared(noise.tolist(), [0.0] * 400)
     half = norm.ppf(0.975) * noise.std() / math.sqrt(400)
     assert found.mean == pytest.approx(noise.mean())
     assert found.low == pytest.approx(noise.mean() - half, abs=0.03 * half)
     assert found.high == pytest.approx(noise.mean() + half, abs=0.03 * half)
-    assert found == compared(noise.tolist(), [0.0] * 400)
+    assert found == tables.compared(noise.tolist(), [0.0] * 400)
 
 
 @pytest.mark.parametrize(
@@ -138,14 +138,14 @@ def test_signed_ranks_are_exact_with_ties_and_equal_pairs(moved, equal):
     ]
     half, found = ranks.sum() / 2, ranks[np.array(moved) > 0].sum()
     expected = np.mean([abs(one - half) >= abs(found - half) for one in sums])
-    assert compared([*moved, *[0.0] * equal], [0.0] * (len(moved) + equal)).p == expected
+    assert tables.compared([*moved, *[0.0] * equal], [0.0] * (len(moved) + equal)).p == expected
 
 
 def test_many_signed_ranks_go_by_the_normal_distribution():
     noise = np.random.default_rng(4).normal(0.3, 1.0, 50)
-    exact = compared(noise.tolist(), [0.0] * 50).p
+    exact = tables.compared(noise.tolist(), [0.0] * 50).p
     assert exact == pytest.approx(wilcoxon(noise, method="exact").pvalue)
-    more = compared([*noise.tolist(), 0.1], [0.0] * 51).p
+    more = tables.compared([*noise.tolist(), 0.1], [0.0] * 51).p
     assert more == pytest.approx(wilcoxon([*noise.tolist(), 0.1], method="asymptotic").pvalue)
 
 
@@ -161,11 +161,11 @@ def test_many_signed_ranks_go_by_the_normal_distribution():
     ],
 )
 def test_pairs_are_won_and_have_a_mean(first, second, higher, won, mean, pairs):
-    found = compared(first, second, higher=higher)
+    found = tables.compared(first, second, higher=higher)
     assert (found.won, found.mean, found.pairs) == (won, mean, pairs)
     assert found.left_out == len(first) - pairs
     assert found.p == 1.0
-    assert compared([None], [1.0]) is None
+    assert tables.compared([None], [1.0]) is None
 
 
 def test_a_clear_winner_is_shown_and_ranked_first():
@@ -174,14 +174,14 @@ def test_a_clear_winner_is_shown_and_ranked_first():
     found = results({"weak": low.tolist(), "strong": (low + rng.uniform(0.1, 0.2, 24)).tolist()})
     row = f_sf_table(found).records()[0]
     assert (row["shows"], row["won"], row["pairs"]) == ("strong", 0.0, 24)
-    first, second = pair_tables(found)[-1].records()
+    first, second = tables.pair_tables(found)[-1].records()
     assert (first["method"], first["F_SF"], second["F_SF"]) == ("strong", 1.0, 2.0)
     assert first["mean rank"] == pytest.approx((1.0 + 4 * 1.5) / 5)
     assert first["not told apart from the next in"] == "placed, F_AV, F_AH, F_LR"
     assert second["not told apart from the next in"] is None
     # Few pairs show nothing, and it is said.
     found = results({"weak": [0.1, 0.2, 0.1, 0.2], "strong": [0.5] * 4})
-    table, (first, _) = f_sf_table(found), pair_tables(found)[-1].records()
+    table, (first, _) = f_sf_table(found), tables.pair_tables(found)[-1].records()
     assert table.records()[0]["shows"] == "strong?"
     assert any("no p can be below 0.62" in note for note in table.notes)
     assert first["not told apart from the next in"] == "placed, F_SF, F_AV, F_AH, F_LR"
@@ -223,7 +223,7 @@ def test_copies_are_no_evidence():
     ],
 )
 def test_equal_values_share_a_rank_and_undefined_ones_are_last(values, ranks):
-    ranking = pair_tables(results(values))[-1].records()
+    ranking = tables.pair_tables(results(values))[-1].records()
     assert {row["method"]: row["F_SF"] for row in ranking} == ranks
 
 
@@ -239,7 +239,7 @@ def made(**columns):
 
 def test_mean_spread_and_best():
     values = [0.7, 0.8, 0.9], [0.5, 0.5, 0.53]
-    walls, everything, times = comparison(made(F_SF=values, F_AH=values))
+    walls, everything, times = tables.comparison(made(F_SF=values, F_AH=values))
     first, second = walls.records()
     assert (first["F_SF"], first["±F_SF"]) == (pytest.approx(0.8), pytest.approx(0.1))
     assert (first["best F_SF"], first["best F_AH"]) == (0.9, 0.7)
@@ -252,14 +252,15 @@ def test_mean_spread_and_best():
 
 
 def test_what_is_not_defined_is_counted_and_never_zero():
-    walls, everything, _ = comparison(made(F_LR=([None, 0.4, 0.6], [None] * 3)))
+    walls, everything, _ = tables.comparison(made(F_LR=([None, 0.4, 0.6], [None] * 3)))
     first, second = walls.records()
     assert first["F_LR"] == everything.records()[0]["F_LR"] == pytest.approx(0.5)
     assert second["F_LR"] is second["best F_LR"] is second["±F_LR"] is None
     assert any("F_LR is not defined for walls of one 4 of 6" in note for note in walls.notes)
     # Amplitudes are there when walls were shaken.
     assert "PGA, g" not in walls.columns
-    walls, *_ = comparison(made(pga_g=([0.2, None, 0.3], [0.1] * 3), shaken=[["yes"] * 3] * 2))
+    shaken = made(pga_g=([0.2, None, 0.3], [0.1] * 3), shaken=[["yes"] * 3] * 2)
+    walls, *_ = tables.comparison(shaken)
     assert walls.records()[0]["PGA, g"] == pytest.approx(0.25)
     # Of the yardstick nothing was built, and so it is of walls in which no stone found a place.
     said = "one 1 of 6: nothing was built, or it does not stand at rest in the engine; left"

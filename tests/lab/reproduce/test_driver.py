@@ -7,8 +7,8 @@ from datetime import UTC, datetime
 import pytest
 
 from drystone.errors import InputError, UsageError
-from drystone_lab.reproduce.driver import EVERY_S, ItemProgress, Options, reproduce
-from drystone_lab.reproduce.page import LONG, duration, heading, write_item_page, write_page
+from drystone_lab.reproduce import driver
+from drystone_lab.reproduce.driver import Options, reproduce
 from drystone_lab.runs.outcome import one_by_one
 from drystone_lab.table import written
 from tests.drawing.report.test_report import Page
@@ -153,9 +153,9 @@ def test_folders_of_others_are_refused(mark, tmp_path):
 
 def test_walls_are_told_of_now_and_then():
     said, now = [], [0.0]
-    progress = ItemProgress(said.append, 1, lambda: now[0])
+    progress = driver.ItemProgress(said.append, 1, lambda: now[0])
     progress.begin("fig5")
-    for text, step in (("1", 0.0), ("2", EVERY_S / 2), ("3", EVERY_S), ("4", 3661.0)):
+    for text, step in (("1", 0.0), ("2", driver.EVERY_S / 2), ("3", driver.EVERY_S), ("4", 3661.0)):
         now[0] += step
         progress.walls(text)
     assert [line.split(": ")[-1] for line in said[1:]] == ["1", "3", "4"]
@@ -183,7 +183,8 @@ def record(name, *, quick=False, seed=1):
         },
         "taken": {"seconds": 1.0, "walls": 20, "wall_seconds": 90.0},
         "paper": ["F_SF is .88 & more."], "ours": ["It is .89 here."],
-        "tables": [table("short", 2), table("long", LONG + 1)], "times": [table("t_times", 1)],
+        "tables": [table("short", 2), table("long", driver.LONG + 1)],
+        "times": [table("t_times", 1)],
         "pictures": [
             {"name": "p", "png": "p.png", "svg": "p.svg", "width_px": 1000, "height_px": 500,
              "caption": "Walls of 'R'."},
@@ -194,7 +195,7 @@ def record(name, *, quick=False, seed=1):
 def test_the_report_of_all_and_of_one(tmp_path):
     records = [record("table2", quick=True, seed=3), record("fig5")]
     misses = {"fig13": {"title": "masons", "section": "§5.1", "error": "E100 R.png: is not there."}}
-    path = write_page(tmp_path / "index.html", records, misses, ORDER)
+    path = driver.write_page(tmp_path / "index.html", records, misses, ORDER)
     page = Page(path.read_text(encoding="utf-8"))
     # In the order of the paper
     heads = [attributes["id"] for attributes in page.all("h2") if "id" in attributes]
@@ -222,18 +223,19 @@ def test_the_report_of_all_and_of_one(tmp_path):
     assert not any("://" in link for link in links)
     # Long tables are folded.
     assert len(page.all("details")) == 1 + 2  # what it was made with, and one an item
-    assert f"Table of long ({LONG + 1} rows)" in page.text
+    assert f"Table of long ({driver.LONG + 1} rows)" in page.text
     assert "0.12346" in page.text
     assert "0.123456789" not in page.text
-    one = Page(write_item_page(tmp_path / "one.html", record("fig5")).read_text(encoding="utf-8"))
+    alone = driver.write_item_page(tmp_path / "one.html", record("fig5"))
+    one = Page(alone.read_text(encoding="utf-8"))
     assert one.all("a")[0]["href"] == "../index.html#fig5"
     assert [image["src"] for image in one.all("img")] == ["p.png"]
 
 
 def test_words():
-    assert heading("table2", "walls") == "Table 2: walls"
-    assert heading("figB30-32", "x") == "Fig. B.30\N{EN DASH}32: x"
-    assert heading("beta", "the threshold") == "The threshold"
+    assert driver.heading("table2", "walls") == "Table 2: walls"
+    assert driver.heading("figB30-32", "x") == "Fig. B.30\N{EN DASH}32: x"
+    assert driver.heading("beta", "the threshold") == "The threshold"
     cells = [written(value) for value in (0.0, False, 1e-4, 123456.7)]
     assert cells == ["0", "no", "1.0e-04", "1.2346e+05"]
-    assert [duration(seconds) for seconds in (59.97, 3600)] == ["1 min 0 s", "1 h 0 min"]
+    assert [driver.duration(seconds) for seconds in (59.97, 3600)] == ["1 min 0 s", "1 h 0 min"]

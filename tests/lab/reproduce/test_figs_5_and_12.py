@@ -12,7 +12,7 @@ from drystone.clusters import stone_features
 from drystone.contacts.blocks import model_from_labels
 from drystone.drawing.palette import cluster_colour
 from drystone.poses import PoseBook
-from drystone_lab.reproduce import fig5, fig12
+from drystone_lab.reproduce import fig5, method
 from tests.lab.reproduce.small_walls import RUBBLE, built, context, gids, of, rows
 
 
@@ -92,7 +92,7 @@ def test_stones_are_at_their_features_in_the_colour_of_their_cluster():
 
 @pytest.fixture(scope="module")
 def labels(folder):
-    return fig12.three_stones(built(folder, RUBBLE).wall)
+    return method.three_stones(built(folder, RUBBLE).wall)
 
 
 def naive_edges(labels):
@@ -114,7 +114,9 @@ def naive_edges(labels):
 def test_edges_are_where_pixels_of_two_blocks_meet_and_interfaces_end_on_their_corners(
     labels, outputs
 ):
-    found = [tuple(map(tuple, edge)) for edge in np.stack(fig12.boundary_edges(labels), 1).tolist()]
+    found = [
+        tuple(map(tuple, edge)) for edge in np.stack(method.boundary_edges(labels), 1).tolist()
+    ]
     assert len(found) == len(set(found)) > 10
     assert set(found) == naive_edges(labels)
     corners = {point for edge in naive_edges(labels) for point in edge}
@@ -146,7 +148,7 @@ def test_three_stones_stand_on_the_ground_and_on_each_other(folder, labels):
     assert all(frozenset((top, below)) in pairs for below in on_ground)
     # Where none stands on two, the first three are taken.
     first = {stage.stone.stone for stage in run.stages[:3]}
-    assert set(np.unique(fig12.three_stones(run.stages[2].after)).tolist()) == first | {0}
+    assert set(np.unique(method.three_stones(run.stages[2].after)).tolist()) == first | {0}
 
 
 def test_the_mean_of_the_normals_of_pixels_is_across_the_ends():
@@ -154,21 +156,21 @@ def test_the_mean_of_the_normals_of_pixels_is_across_the_ends():
     labels = np.ones((12, 12), np.uint32)
     for col, height in enumerate(steps):
         labels[: 11 - height, col] = 2
-    starts, ends = fig12.boundary_edges(labels)
+    starts, ends = method.boundary_edges(labels)
     way = (ends - starts)[(starts[:, 1] > 0) | (ends[:, 1] > 0)]
     mean = np.array([-way[:, 1], way[:, 0]]).mean(axis=1)
     mean /= np.hypot(*mean)
     (run,) = [i for i in model_from_labels(labels).model.interfaces if i.other == 1]
-    np.testing.assert_allclose(fig12._mean_normal(run), mean, atol=1e-12)
-    assert 0 < fig12._apart_deg(run) < 10
+    np.testing.assert_allclose(method._mean_normal(run), mean, atol=1e-12)
+    assert 0 < method._apart_deg(run) < 10
 
 
 def test_normals_are_to_the_left_of_the_way():
     starts, ends = np.array([[4.0, 4.0], [8.0, 0.0]]), np.array([[5.0, 4.0], [8.0, 1.0]])
     ax = Figure().add_subplot()
     labels = np.kron([[0, 7, 7], [3, 3, 5]], np.ones((4, 4), int)).astype(np.uint32)
-    fig12.plot_boundary_edges(ax, labels, starts, ends)
+    method.plot_boundary_edges(ax, labels, starts, ends)
     lines = {one.get_gid(): one.get_segments() for one in ax.collections}
     np.testing.assert_allclose(lines["edges"], np.stack([starts, ends], axis=1))
-    ups = [[[4.5, 4.0], [4.5, 4.0 + fig12.NORMAL_PX]], [[8.0, 0.5], [8.0 - fig12.NORMAL_PX, 0.5]]]
+    ups = [[[4.5, 4.0], [4.5, 4.0 + method.NORMAL_PX]], [[8.0, 0.5], [8.0 - method.NORMAL_PX, 0.5]]]
     np.testing.assert_allclose(lines["normals"], ups)

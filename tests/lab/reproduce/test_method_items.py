@@ -11,14 +11,16 @@ from drystone.model.site import Site
 from drystone.planner.planner import Planner
 from drystone.selection.policies.registry import rule_of
 from drystone_lab.reproduce import method
+from drystone_lab.reproduce.items import ITEMS
 from drystone_lab.walls import PR
 from tests.lab.reproduce.small_walls import RUBBLE, context, gids, of, rows
 
 
 def test_table_1_has_the_components_of_our_policies(here):
     table = rows(of("table1").make(here), "table1")
-    assert [row["component"] for row in table] == [name for name, *_ in method.ROWS.values()]
-    for row, (_, count, _) in zip(table, method.ROWS.values(), strict=True):
+    marks = ITEMS["table1"]["marks"]
+    assert [row["component"] for row in table] == list(marks)
+    for row, (_, count, *_) in zip(table, marks.values(), strict=True):
         assert sum("ours" in str(row[policy]) for policy in method.MARKS) == count
     assert len({rule_of(name) for name in method.MARKS}) == 7
 

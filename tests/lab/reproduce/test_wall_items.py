@@ -12,7 +12,7 @@ from drystone.model.placement import Wedge
 from drystone.model.site import Site
 from drystone.model.wall import Group, Wall
 from drystone.planner.profile import StepTime
-from drystone_lab.reproduce import base_case, noise, other_stones, times, ways
+from drystone_lab.reproduce import noise, other_stones, times, ways
 from drystone_lab.reproduce.other_stones import Brick, bricks_of, courses_of, head_joints
 from drystone_lab.runs.spec import generated
 from drystone_lab.timed_walls import TimedWall
@@ -94,7 +94,7 @@ def test_wedges(here):
         ids = [wedge.id for wedge in built.wedges]
         heights = [int((built.labels == each).any(axis=1).sum()) for each in ids]
         assert [row["height, px"] for row in mine] == heights
-        chosen = base_case.shown(built)
+        chosen = ways.shown(built)
         largest = max((int((built.labels == each).sum()) for each in ids), default=None)
         assert (chosen[0].area_px if chosen else None) == largest
 
@@ -105,7 +105,7 @@ def test_the_largest_wedges_are_shown_once():
     for number, (column, size) in enumerate(((10, 2), (100, 6), (110, 5), (60, 4), (190, 3)), 1):
         wedge = Wedge(number, 0, np.ones((size, size), bool), 20, column)
         wall = Wall(wall.site, wall.labels, (*wall.groups, Group(None, (wedge,))))
-    assert [wedge.id for wedge in base_case.shown(wall)] == [2, 4, 5]
+    assert [wedge.id for wedge in ways.shown(wall)] == [2, 4, 5]
 
 
 def test_stabilisation(made, here):

@@ -20,9 +20,8 @@ from drystone.planner.workshop import Workshop
 from drystone.search.goal import WallFigures, figures_of, merit_of, possible_filling
 from drystone.selection.policies.choices import LOWEST
 from drystone.selection.policies.learned import FEATURES, features
-from drystone_lab.rl.draw import KINDS, DrawSettings, draw_wall, in_order
 from drystone_lab.rl.env import WallEnv
-from drystone_lab.rl.episode import ARRIVING, Episode
+from drystone_lab.rl.episode import ARRIVING, KINDS, DrawSettings, Episode, draw_wall, in_order
 
 SMALL = DrawSettings(kinds=("brick", "polygon"), stones=7, size_px=12.0)
 

@@ -5,7 +5,7 @@ import pytest
 from scipy.stats import ttest_rel
 
 from drystone.search.goal import GoalSettings
-from drystone_lab.rl.draw import DrawSettings
+from drystone_lab.rl.episode import DrawSettings
 from drystone_lab.rl.evaluate import FIGURES, difference, figures_by, held_out_wall, main, report
 
 DRAW = DrawSettings(stones=6, size_px=10.0)

@@ -10,8 +10,7 @@ from drystone.model.site import Site
 from drystone.planner.workshop import Workshop
 from drystone.selection.policies.learned import FEATURES, learned, model_from_json, shipped_model
 from drystone_lab.rl import train
-from drystone_lab.rl.draw import DrawSettings, draw_wall
-from drystone_lab.rl.episode import ARRIVING, Episode
+from drystone_lab.rl.episode import ARRIVING, DrawSettings, Episode, draw_wall
 from tests.lab.rl.test_env import bricks
 
 TINY = train.TrainSettings(

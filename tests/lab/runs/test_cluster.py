@@ -8,9 +8,9 @@ from types import SimpleNamespace
 import pytest
 
 from drystone.errors import DrystoneError, UsageError
-from drystone_lab.runs.cluster import check_versions, cluster_at_work, execute_there
 from drystone_lab.runs.outcome import Runner, RunStore, one_by_one
 from drystone_lab.runs.spec import RunSpec, published
+from drystone_lab.runs.workers import check_versions, cluster_at_work, execute_there
 from tests.lab.runs.bricks import NOT_SIX, SOURCE, deadly, kept, picture, run
 
 distributed = pytest.importorskip("distributed", reason="the extra `dask` is not installed")

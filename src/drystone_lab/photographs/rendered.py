@@ -1,10 +1,12 @@
-"""A test photograph: stones on a ground, lit, and the truth about them."""
+"""Test photographs: stones on a ground, lit, and the truth about them (``levels.toml``)."""
 
 import io
 import math
+import tomllib
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from pathlib import Path
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.random import Generator
@@ -14,24 +16,171 @@ from scipy import ndimage
 from skimage.draw import polygon2mask
 from skimage.transform import matrix_transform, warp
 
+from drystone.generate import FourierSettings, RubbleSettings, fourier_stones, rubble_stones
 from drystone.kernels.raster import Mask
 from drystone.photo.layout import ON_A_SHEET, MarkerLayout, page_mm, parse_layout
 from drystone.photo.markers import marker_modules
-from drystone_lab.photographs.layout import GroundKind, Labels, PhotoLevel, Rock, lay_stones
+
+Markers = Literal["sheet", "single", "none"]
+GroundKind = Literal["plywood", "tarpaulin", "cloth", "rubber", "gravel", "grass"]
+Rock = Literal["granite", "sandstone", "limestone", "basalt", "schist"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class PhotoLevel:
+    """What a photograph shows, and what the camera does to it."""
+
+    name: str
+    seed: int = 1
+    count: int = 24  # Stones; a few less when they find no place
+    angular: float = 0.5  # Share of the stones that are rubble, 0 to 1; the others are rounded
+    rocks: tuple[Rock, ...] = ("granite", "sandstone", "limestone")  # Kinds of rock, in turn
+    ground: GroundKind = "tarpaulin"
+    gap_px: int = 24  # Empty px between stones and between stones and the edge, at least
+    touching: int = 0  # Stones that are pushed against another one
+    cut: int = 0  # Stones that the edge of the photograph cuts
+    shadow: float = 0.0  # How much light a cast shadow takes, 0 to 1
+    sun_deg: float = 50.0  # Height of the light above the ground
+    # How much darker the darkest place of the ground is lit than the brightest, 0 to 1
+    uneven: float = 0.0
+    markers: Markers = "sheet"  # A sheet of four, four single ones, or none
+    marker_mm: float = 75.0  # Side of a marker
+    wrong_print: float = 1.0  # How much too large the last paper was printed; 1 is right
+    tilt_deg: float = 0.0  # How far the camera looks away from the vertical
+    turn_deg: float = 0.0  # How far the photograph is turned about the line of sight
+    # blur_px, noise, quality: Radius (sigma) of the defocus, standard deviation of the sensor's
+    # noise in grey values, quality of the JPEG
+    blur_px: float = 0.6
+    noise: float = 1.5
+    quality: int = 92
+    orientation: int = 1  # EXIF orientation, 1 to 8, with which the file is stored
+    width_px: int = 2000  # width_px, height_px: Of the photograph as it is seen
+    height_px: int = 1500
+    px_per_m: float = 1250.0  # About, in the middle of the photograph
+
+
+_FILE = tomllib.loads(Path(__file__).with_name("levels.toml").read_text("utf-8"))
+
+LEVELS = tuple(
+    PhotoLevel(**level | {"rocks": tuple(level.get("rocks", PhotoLevel.rocks))})
+    for level in _FILE["levels"]
+)
+"""Test photographs, from easy to hard."""
+
+
+Labels = NDArray[np.uint16]
+TRIES = 400
+
+
+def lay_stones(level: PhotoLevel, forbidden: Mask, seen: Mask, rng: Generator) -> Labels:
+    """Lay stones down where there is room; return them, 1 ... n, 0 elsewhere.
+
+    `forbidden` (h, w) is where the markers are, `seen` (h, w) what the camera sees of the ground.
+    """
+    masks = [np.rot90(mask, int(rng.integers(4))) for mask in _shapes(level, rng)]
+    masks.sort(key=lambda mask: -int(mask.sum()))
+    inside = ndimage.distance_transform_edt(np.pad(seen, 1))[1:-1, 1:-1] > level.gap_px
+    edge = inside & ~ndimage.binary_erosion(inside)
+    table = _Table(
+        np.zeros(forbidden.shape, np.uint16), forbidden.copy(), ~inside | forbidden, level.gap_px
+    )
+    for turn, mask in enumerate(masks):
+        if turn >= len(masks) - level.touching and table.count:
+            table.push(mask, rng)
+        elif turn < level.cut:
+            table.drop(mask, np.argwhere(edge), rng, table.taken)
+        else:
+            table.drop(mask, np.argwhere(inside), rng, table.taken | table.outside)
+    return table.labels
+
+
+def _shapes(level: PhotoLevel, rng: Generator) -> list[Mask]:
+    """Return masks that cover about a quarter of the photograph, which leaves room for all."""
+    angular = round(level.angular * level.count)
+    area = 0.24 * level.width_px * level.height_px / level.count
+    radius = float(np.sqrt(area / np.pi))
+    masks: list[Mask] = []
+    if level.count > angular:
+        rounded = FourierSettings(
+            count=level.count - angular, smallest_radius_px=0.6 * radius,
+            largest_radius_px=1.35 * radius, D2=0.12,
+        )  # fmt: skip
+        masks += [stone.mask for stone in fourier_stones(rounded, rng)]
+    if angular:
+        side = float(np.sqrt(area * angular))
+        rubble = RubbleSettings(
+            count=angular, width_px=1.5 * side, height_px=side / 1.5,
+            courses=max(1, round(np.sqrt(0.7 * angular))),
+        )  # fmt: skip
+        masks += [stone.mask for stone in rubble_stones(rubble, rng)]
+    return masks
+
+
+@dataclass
+class _Table:
+    """The ground while stones are laid on it."""
+
+    labels: Labels
+    taken: Mask
+    outside: Mask
+    gap_px: int
+    count: int = 0
+
+    def drop(self, mask: Mask, middles: NDArray[np.intp], rng: Generator, blocked: Mask) -> None:
+        """Lay a stone at one of the places where it covers nothing that is blocked."""
+        for middle in rng.integers(len(middles), size=TRIES):
+            row, col = (int(k) for k in middles[middle] - np.array(mask.shape) // 2)
+            if self._holds(row, col, mask) and not (blocked[_box(row, col, mask)] & mask).any():
+                self._lay(row, col, mask)
+                return
+
+    def push(self, mask: Mask, rng: Generator) -> None:
+        """Move a stone towards another until they touch, if it can lie there."""
+        for _ in range(TRIES // 10):
+            beside = int(rng.integers(1, self.count + 1))
+            angle = rng.uniform(0, 2 * np.pi)
+            place = self._contact(beside, mask, np.array([np.sin(angle), np.cos(angle)]))
+            if place is not None:
+                self._lay(*place, mask)
+                return
+
+    def _contact(self, beside: int, mask: Mask, way: NDArray[np.float64]) -> tuple[int, int] | None:
+        """Return where a stone that comes along a ray meets the other; None when it cannot lie."""
+        old = self.labels == beside
+        middle = np.argwhere(old).mean(axis=0) - np.array(mask.shape) / 2
+        reach = int(max(mask.shape) + 2 * np.sqrt(old.sum()))
+        for near in range(reach):
+            row, col = (int(k) for k in middle + way * near)
+            if not self._holds(row, col, mask):
+                return None
+            box = _box(row, col, mask)
+            if not (old[box] & mask).any():
+                bad = self.outside[box] | (self.labels[box] != 0)
+                return None if (bad & mask).any() else (row, col)
+        return None
+
+    def _holds(self, row: int, col: int, mask: Mask) -> bool:
+        height, width = self.labels.shape
+        return (
+            row >= 0 and col >= 0 and row + mask.shape[0] <= height and col + mask.shape[1] <= width
+        )
+
+    def _lay(self, row: int, col: int, mask: Mask) -> None:
+        self.count += 1
+        self.labels[_box(row, col, mask)][mask] = self.count
+        gap, (height, width) = self.gap_px, mask.shape
+        near = np.s_[max(row - gap, 0) : row + height + gap, max(col - gap, 0) : col + width + gap]
+        self.taken[near] |= ndimage.distance_transform_edt(self.labels[near] == 0) < gap
+
+
+def _box(row: int, col: int, mask: Mask) -> tuple[slice, slice]:
+    return slice(row, row + mask.shape[0]), slice(col, col + mask.shape[1])
+
 
 Plane = NDArray[np.float32]
 """(h, w)."""
 Light = NDArray[np.float32]
 """(h, w, 3), linear, 0 to 1 for what a camera can record."""
-
-_ROCKS: dict[Rock, tuple[tuple[str, ...], float, float, float]] = {
-    "granite": (("#a3a09c", "#b3a79d", "#8f9092"), 0.10, 0.55, 0.0),
-    "sandstone": (("#b98f63", "#a5714f", "#c7a77c"), 0.16, 0.08, 0.15),
-    "limestone": (("#d6cdb9", "#c9c1ad", "#ded8cc"), 0.10, 0.05, 0.25),
-    "basalt": (("#4a4b4e", "#565350", "#3d4044"), 0.15, 0.15, 0.0),
-    "schist": (("#7b8076", "#6f7480", "#8a8272"), 0.16, 0.12, 0.35),
-}
-"""Colours, and how strong clouds, specks and veins are."""
 
 
 def linear(colour: str) -> NDArray[np.float32]:
@@ -62,7 +211,7 @@ def clouds(
 
 def stone_face(rock: Rock, shape: tuple[int, int], rng: Generator) -> Light:
     """Return the surface of a stone, flat and evenly lit: clouds, specks and veins on a colour."""
-    colours, cloudy, speckled, veined = _ROCKS[rock]
+    colours, cloudy, speckled, veined = _FILE["rocks"][rock].values()
     base = linear(colours[int(rng.integers(len(colours)))])
     base = base * np.float32(rng.uniform(0.85, 1.15))
     size = max(shape)
@@ -75,13 +224,7 @@ def stone_face(rock: Rock, shape: tuple[int, int], rng: Generator) -> Light:
     colour = base * (1 + light[..., None])
     colour[..., 0] *= 1 + tint
     colour[..., 2] *= 1 - tint
-    return np.clip(colour, 0.01, 1.0).astype(np.float32)
-
-
-_GROUNDS: dict[GroundKind, str] = {
-    "plywood": "#d8b98a", "tarpaulin": "#2f6fb0", "cloth": "#ecebe6", "rubber": "#26262a",
-    "gravel": "#c9c3b4", "grass": "#5b8a35",
-}  # fmt: skip
+    return np.asarray(np.clip(colour, 0.01, 1.0), np.float32)
 
 
 def ground_surface(ground: GroundKind, shape: tuple[int, int], rng: Generator) -> Light:
@@ -112,7 +255,7 @@ def ground_surface(ground: GroundKind, shape: tuple[int, int], rng: Generator) -
             patches = noise((220, 220), (70, 70))
             light = np.exp(0.35 * blades + 0.12 * patches)
             redder = 0.12 * patches
-    colour = linear(_GROUNDS[ground]) * light[..., None]
+    colour = linear(_FILE["grounds"][ground]) * light[..., None]
     colour[..., 0] *= 1 + redder
     return np.asarray(np.clip(colour, 0.005, 1.0), np.float32)
 

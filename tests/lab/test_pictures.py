@@ -9,8 +9,8 @@ from matplotlib.figure import Figure
 
 from drystone.drawing.palette import PLAIN_COLOUR, cluster_colour
 from drystone.planner.profile import StepTime
-from drystone_lab.pictures import charts, walls
-from drystone_lab.pictures.charts import Prediction, group_panels
+from drystone_lab import pictures
+from drystone_lab.pictures import Prediction, group_panels
 from tests.drawing.examples import CLUSTERS, WEDGE, wall
 
 VALUES = {"both": [0.8, 0.7, 0.9, 0.75, 0.72, 0.71], "none": [0.5, None, 0.4], "empty": [None]}
@@ -45,7 +45,7 @@ def test_panels_fill_rows(count, columns):
 
 def test_one_figure_over_another():
     pairs = {"rotation": [(1.0, 0.5), (3.0, 0.7), (2.0, 0.1)], "wedge": [(None, 0.5), (4.0, 0.6)]}
-    ax = charts.plot_two_figures(pairs, across="area", up="F_SF")
+    ax = pictures.plot_two_figures(pairs, across="area", up="F_SF")
     assert [value[0] for value in _line(ax, "median-rotation").get_data()] == [2.0, 0.5]
     assert [list(value) for value in _line(ax, "group-wedge").get_data()] == [[4.0], [0.6]]
     assert (ax.get_xlabel(), ax.get_ylabel()) == ("area", "F_SF")
@@ -60,10 +60,10 @@ CLAIMS = [("paper: wall", "x", 20.0, 9.0), ("paper: step", "v", 90.0, 25.0)]
 
 
 def test_parts_stand_on_top_of_each_other_and_reach_the_time_of_the_step():
-    figure = charts.step_time_panels({"variant": STEPS, "full": STEPS[:1]})
+    figure = pictures.step_time_panels({"variant": STEPS, "full": STEPS[:1]})
     ax, right = figure.axes
     assert (ax.get_title(), right.get_title()) == ("variant", "full")
-    parts = [*charts.PART_COLOURS, charts.REST]
+    parts = [*pictures.PART_COLOURS, pictures.REST]
     assert [text.get_text() for text in figure.legends[0].get_texts()] == parts
     assert [bars.get_label() for bars in ax.containers] == parts
     assert ax.get_legend() is right.get_legend() is None
@@ -71,7 +71,7 @@ def test_parts_stand_on_top_of_each_other_and_reach_the_time_of_the_step():
         foot = 0.0
         for part, bars in zip(parts, ax.containers, strict=True):
             assert bars[k].get_y() == pytest.approx(foot)
-            if part != charts.REST:
+            if part != pictures.REST:
                 assert bars[k].get_height() == pytest.approx(1e3 * step.parts.get(part, 0.0))
             foot += bars[k].get_height()
         assert foot == pytest.approx(1e3 * step.seconds)
@@ -79,14 +79,14 @@ def test_parts_stand_on_top_of_each_other_and_reach_the_time_of_the_step():
 
 def test_points_laws_and_claims_are_drawn_where_they_are():
     ax = Figure().add_subplot()
-    charts.plot_growth(ax, SERIES, CLAIMS)
+    pictures.plot_growth(ax, SERIES, CLAIMS)
     points, line, bare, *paper = ax.get_lines()
     assert points.get_xydata().tolist() == [[10.0, 1.0], [100.0, 10.0]]
     np.testing.assert_allclose(line.get_xydata(), points.get_xydata())
     assert bare.get_xydata().tolist() == [[10.0, 0.5]]
     assert [claim.get_marker() for claim in paper] == ["x", "v"]
     assert paper[1].get_xydata().tolist() == [[90.0, 25.0]]
-    assert [points.get_color(), bare.get_color()] == [colour for colour, _ in charts.LOOKS[:2]]
+    assert [points.get_color(), bare.get_color()] == [colour for colour, _ in pictures.LOOKS[:2]]
     words = [text.get_text() for text in ax.get_legend().get_texts()]
     assert words == ["wall", "exponent 1.00", "step", "paper: wall", "paper: step"]
     assert (ax.get_xscale(), ax.get_yscale()) == ("log", "log")
@@ -101,13 +101,15 @@ POINTS = [
 
 
 def test_points_bands_looks_and_legend():
-    ax = charts.plot_predictions(POINTS, "friction")
+    ax = pictures.plot_predictions(POINTS, "friction")
     for (line, _, (bar,)), point in zip(ax.containers, POINTS, strict=True):
         assert line.get_xydata().tolist() == [[point.measured, point.predicted]]
         ends = [[point.measured, point.low], [point.measured, point.high]]
         assert bar.get_segments()[0].tolist() == ends
     looks = [(bars[0].get_color(), bars[0].get_marker()) for bars in ax.containers]
-    assert looks == [(charts.COLOURS[c], charts.MARKERS[m]) for c, m in ((0, 0), (1, 0), (0, 1))]
+    assert looks == [
+        (pictures.COLOURS[c], pictures.MARKERS[m]) for c, m in ((0, 0), (1, 0), (0, 1))
+    ]
     assert ax.get_xlim() == ax.get_ylim() == (0.0, pytest.approx(84.0))
     np.testing.assert_array_equal(*_line(ax, "equal").get_xydata().T)
     words = [text.get_text() for text in ax.get_legend().get_texts()]
@@ -115,12 +117,12 @@ def test_points_bands_looks_and_legend():
 
 
 def _panel(title, aspect):
-    return walls.Panel(title, aspect, lambda ax: ax.plot([0, 1], [0, 1], label="line"))
+    return pictures.Panel(title, aspect, lambda ax: ax.plot([0, 1], [0, 1], label="line"))
 
 
 def test_panels_go_from_left_to_right_and_down_as_high_as_the_tallest_of_their_row():
-    panels = [_panel("a", 0.2), _panel("b\nsecond", 0.5), walls.EMPTY, _panel("d", 0.3)]
-    figure = walls.sheet_of(panels, 2)
+    panels = [_panel("a", 0.2), _panel("b\nsecond", 0.5), pictures.EMPTY, _panel("d", 0.3)]
+    figure = pictures.sheet_of(panels, 2)
     assert [ax.get_title(loc="left") for ax in figure.axes] == ["a", "b\nsecond", "d"]
     boxes = [ax.get_position(original=True) for ax in figure.axes]
     assert boxes[0].x1 < boxes[1].x0 < 1
@@ -128,7 +130,7 @@ def test_panels_go_from_left_to_right_and_down_as_high_as_the_tallest_of_their_r
     assert boxes[2].y1 < boxes[1].y0
     assert min(box.y0 for box in boxes) > 0
     assert max(box.y1 for box in boxes) < 1
-    figure = walls.sheet_of([_panel("", 0.2), _panel("", 0.5), _panel("", 0.3)], 2)
+    figure = pictures.sheet_of([_panel("", 0.2), _panel("", 0.5), _panel("", 0.3)], 2)
     inches = figure.get_size_inches()
     sizes = [ax.get_position(original=True).size * inches for ax in figure.axes]
     assert [high / wide for wide, high in sizes] == pytest.approx([0.5, 0.5, 0.3])
@@ -136,7 +138,7 @@ def test_panels_go_from_left_to_right_and_down_as_high_as_the_tallest_of_their_r
 
 
 def test_every_wall_is_drawn_whole_under_its_title():
-    figure = walls.plot_walls([("one", wall(), CLUSTERS), ("two\nlines", wall(), None)], 2)
+    figure = pictures.plot_walls([("one", wall(), CLUSTERS), ("two\nlines", wall(), None)], 2)
     assert [ax.get_title(loc="left") for ax in figure.axes] == ["one", "two\nlines"]
     for ax in figure.axes:
         gids = {patch.get_gid() for patch in ax.patches}
@@ -144,13 +146,15 @@ def test_every_wall_is_drawn_whole_under_its_title():
         assert ax.get_xlabel() == "px"
         assert ax.get_legend() is None
     site, (x0, x1), (y0, y1) = wall().site, ax.get_xlim(), ax.get_ylim()
-    assert walls.wall_aspect(site.height_px / site.width_px) == pytest.approx((y1 - y0) / (x1 - x0))
+    assert pictures.wall_aspect(site.height_px / site.width_px) == pytest.approx(
+        (y1 - y0) / (x1 - x0)
+    )
 
 
 def test_masonry_is_coloured_by_cluster_and_in_source_px():
     labels = np.kron([[1, 2], [7, 7]], np.ones((4, 10), int)).astype(np.uint32)
-    panel = walls.masonry_panel("masons", labels, {1: 2, 7: 1}, 5.0)
-    (ax,) = walls.sheet_of([panel], 1).axes
+    panel = pictures.masonry_panel("masons", labels, {1: 2, 7: 1}, 5.0)
+    (ax,) = pictures.sheet_of([panel], 1).axes
     colours = {p.get_gid(): p.get_facecolor() for p in ax.patches if p.get_gid() != "ground"}
     expected = {"stone-1": cluster_colour(2), "stone-2": PLAIN_COLOUR, "stone-7": cluster_colour(1)}
     assert {gid: to_hex(colour) for gid, colour in colours.items()} == expected
