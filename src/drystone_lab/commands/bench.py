@@ -24,13 +24,13 @@ SUITES = {name: words for name, words in BENCH.items() if "made" in words}
 
 PUBLIC, HISTORY = "the public suites", "--history"
 
-GOES_BY = {name: ("quick", "seed", *of.get("options", ())) for name, of in SUITES.items()} | {
-    PUBLIC: (
-        "quick", "seed", "seeds", "only", "policy", "settings", "jobs", "dask", "store", "again",
-        "shake",
-    ),
+GOES_BY = {
+    **{
+        name: ("quick", "seed", *words.get("options", ()))
+        for name, words in {**SUITES, PUBLIC: BENCH["public"]}.items()
+    },
     HISTORY: ("store", "output"),
-}  # fmt: skip
+}
 """Who goes by which options; all of them by the data and by how tables are printed."""
 
 WHY = {

@@ -27,9 +27,10 @@ from drystone_lab.pictures import Panel, group_panels, plot_two_figures, sheet_o
 from drystone_lab.reproduce import cells
 from drystone_lab.reproduce.cells import METRICS, rounded
 from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem, StudyWalls, Trials
+from drystone_lab.reproduce.items import ITEMS
 from drystone_lab.runs.spec import Changes
 from drystone_lab.table import Rows
-from drystone_lab.walls import IR, PR, TWO_SIDED, R, Target
+from drystone_lab.walls import IR, PR, R, Target
 
 ALPHAS: Mapping[str, float] = {"left": 0.79, "right": 0.71}
 """Load multipliers of §5.1, tilting towards that side."""
@@ -268,28 +269,12 @@ STABILISATION = PaperItem(
     ],
 )
 
-NAMED: dict[str, Changes] = {
-    "sf: one pose a stone": (("orientations", "sf"),),
-    "shrinking sets": (("sampling", "shrinking"),),
-    "NHR at most 1": (("selection.clip_nhr", True),),
-    "turns of up to 45 degrees": (("stabilise.max_turn_deg", 45.0), ("stabilise.max_pivots", 10)),
-}
-"""What else the paper's method could be."""
-
-RELEASED: dict[str, Changes] = {"two-fold, two-sided": (("sampling", "twofold"), *TWO_SIDED)}
-"""What the released code comes with."""
-
-CAUSES: dict[str, Changes] = {
-    "full batch": (("sampling", "full"),),
-    "six places a stone": (("placement.tries", 6),),
-    "reach from above": (("placement.reach", "above"),),
-    "wedges of up to two stones": (("stabilise.max_wedge_height", 2.0),),
-    "rule lowest": (("placement.rule", "lowest"),),
-    "rule lowest, two-fold, two-sided": (
-        ("placement.rule", "lowest"), *RELEASED["two-fold, two-sided"],
-    ),
-}  # fmt: skip
-"""What might keep PR from its 32 stones; the last are the released code's rule and its own way."""
+NAMED, RELEASED, CAUSES = (
+    {name: tuple(changes.items()) for name, changes in ways.items()}
+    for ways in ITEMS["variants"]["ways"].values()
+)
+"""What else the paper's method could be; what the released code comes with; what might keep PR from
+its 32 stones."""
 
 VARIED: tuple[tuple[Target, dict[str, Changes]], ...] = (
     (R, NAMED | RELEASED),
