@@ -1,7 +1,7 @@
 """What a picture shows, whoever draws it: areas, lines, dots and words; walls, described once.
 
 A :class:`Drawing` is made once and drawn by a back end: :mod:`~drystone.drawing.canvas`
-(Matplotlib), :mod:`~drystone.drawing.vector` (SVG, DXF) or :mod:`~drystone.drawing.pixels`
+(Matplotlib), :mod:`~drystone.drawing.export.vector` (SVG, DXF) or :mod:`~drystone.drawing.pixels`
 (Pillow).  x is to the right, y up from the ground.
 """
 

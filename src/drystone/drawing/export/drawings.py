@@ -1,15 +1,7 @@
-"""wall.svg, wall.dxf, wall-numbered.png and build-sheet.pdf: one drawing of a planned wall.
-
-The SVG is in millimetres, or px of the source image when there is no scale; the DXF in metres, or
-without a unit.  Both have layers: SITE, STONES, WEDGES, NUMBERS, and, not shown at first,
-CONTACTS, FORCES-LEFT and -RIGHT, MECHANISM-LEFT and -RIGHT.
-"""
-
-from dataclasses import replace
+"""wall-numbered.png and build-sheet.pdf, and the drawing of SVG and DXF: a planned wall."""
 
 import numpy as np
 
-from drystone.drawing import vector
 from drystone.drawing.assembly import Assembly
 from drystone.drawing.canvas import draw, figure_bytes, pdf_bytes
 from drystone.drawing.drawing import (
@@ -19,10 +11,8 @@ from drystone.drawing.drawing import (
     Lines,
     Surface,
     drawing_of_assembly,
-    placed,
 )
-from drystone.drawing.export.formats import ExportSettings, Files, load_extra
-from drystone.drawing.lettering import one_line
+from drystone.drawing.export.formats import ExportSettings, Files
 from drystone.drawing.photo import read_photo
 from drystone.drawing.pictures.forces import JOINT, LONGEST_SHARE, RESULTANT, resultants
 from drystone.drawing.pictures.mechanism import motion_of
@@ -32,36 +22,6 @@ from drystone.statics.result import LimitResult
 SMALLEST_SHARE = 0.005  # arrows of smaller forces over the largest one would be dots
 STILL = 1e-4  # motions of less than this share of the wall's width are none that is seen
 MOVED_COLOUR = "#d55e00"
-
-
-def svg(assembly: Assembly, settings: ExportSettings) -> Files:
-    """Return wall.svg."""
-    plan, metric = assembly.plan, assembly.unit == "m"
-    factor = 1000.0 if metric else 1.0
-    width, height = (side * factor for side in assembly.size)
-    scale = "1 unit = 1 mm" if metric else "1 unit = 1 px of the source; no scale"
-    about = (
-        f"{scale}. Wall frame: x from the left end, y from the ground; here y runs down from the "
-        f"top, {height:g} units above the ground. drystone {plan.version}, seed {plan.seed}."
-    )
-    drawing, unit = with_statics(assembly), "mm" if metric else "px"
-    there = replace(drawing, items=tuple(placed(drawing.items, factor)))
-    data = vector.svg_bytes(there, (width, height), unit, _name(assembly, settings), about)
-    return {"wall.svg": data}
-
-
-def dxf(assembly: Assembly, settings: ExportSettings) -> Files:
-    """Return wall.dxf; E185 when ezdxf is not installed."""
-    ezdxf = load_extra("ezdxf", "cad", "E185", "wall.dxf")
-    plan, metric = assembly.plan, assembly.unit == "m"
-    unit = "Unit: 1 metre" if metric else "Not to scale: the unit is 1 px of the source image"
-    about = (
-        one_line(_name(assembly, settings)),
-        f"{unit}. x from the left end, y from the ground.",
-        f"drystone {plan.version}, seed {plan.seed}. Numbers are steps of construction.",
-    )
-    drawing = with_statics(assembly)
-    return {"wall.dxf": vector.dxf_bytes(ezdxf, drawing, assembly.size, metric=metric, about=about)}
 
 
 def png(assembly: Assembly, settings: ExportSettings) -> Files:
@@ -147,7 +107,3 @@ def failed(assembly: Assembly, result: LimitResult) -> list[Surface]:
         for region, moved in zip(motion.regions, motion.at(1.0), strict=True)
         if np.abs(moved.loops[0] - region.loops[0]).max() > STILL * assembly.size[0]
     ]  # fmt: skip
-
-
-def _name(assembly: Assembly, settings: ExportSettings) -> str:
-    return settings.title or str(assembly.plan.source.get("path") or "dry-stone wall")

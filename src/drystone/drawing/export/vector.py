@@ -1,12 +1,15 @@
-"""Drawings as files of lines: SVG, and DXF (R2010) by ezdxf.
+"""wall.svg and wall.dxf: drawings as files of lines.
+
+The SVG is in millimetres, or px of the source image when there is no scale; the DXF (R2010) in
+metres, or without a unit.  Both have layers: SITE, STONES, WEDGES, NUMBERS, and, not shown at
+first, CONTACTS, FORCES-LEFT and -RIGHT, MECHANISM-LEFT and -RIGHT.  Hatched areas are left out.
 
 In the SVG every stone is defined once, as it lay, and placed by its pose.  There y runs down from
 the top of the wall, and a turn by a positive angle is a negative one.  In the DXF outlines are
 closed polylines with name, step and angle as extended data of the application DRYSTONE.
 """
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib import import_module
 from io import StringIO
 from typing import Any
@@ -14,16 +17,19 @@ from xml.etree import ElementTree as ET
 
 import numpy as np
 
+from drystone.drawing.assembly import Assembly
 from drystone.drawing.drawing import (
     Dots,
     Drawable,
-    Drawing,
     Lines,
     Surface,
     Words,
     arrow_head,
     letters_pt,
+    placed,
 )
+from drystone.drawing.export.drawings import with_statics
+from drystone.drawing.export.formats import ExportSettings, Files, load_extra
 from drystone.drawing.lettering import one_line
 from drystone.drawing.outlines import Loop
 from drystone.kernels.polygons import turn
@@ -40,12 +46,11 @@ PER_PT = 0.002  # width of a line of 1 pt over the width of the wall
 LARGEST_LETTER = 0.025  # over the width of the wall
 
 
-def svg_bytes(drawing: Drawing, size: Point, unit: str, title: str, description: str) -> bytes:
-    """Return a drawing as SVG.
-
-    It is in the unit of the file, mm or px, and on the file's layers; hatched areas are left out.
-    """
-    width, height = size
+def svg(assembly: Assembly, settings: ExportSettings) -> Files:
+    """Return wall.svg."""
+    plan, metric = assembly.plan, assembly.unit == "m"
+    factor, unit = (1000.0, "mm") if metric else (1.0, "px")
+    width, height = (side * factor for side in assembly.size)
     margin = round(MARGIN * width, 3)
     wide, high = width + 2 * margin, height + 2 * margin
     root = ET.Element(
@@ -59,8 +64,14 @@ def svg_bytes(drawing: Drawing, size: Point, unit: str, title: str, description:
             "viewBox": f"{_text(-margin)} {_text(-margin)} {_text(wide)} {_text(high)}",
         },
     )
-    ET.SubElement(root, "title").text = one_line(title)
-    ET.SubElement(root, "desc").text = description
+    ET.SubElement(root, "title").text = one_line(_name(assembly, settings))
+    scale = "1 unit = 1 mm" if metric else "1 unit = 1 px of the source; no scale"
+    ET.SubElement(root, "desc").text = (
+        f"{scale}. Wall frame: x from the left end, y from the ground; here y runs down from the "
+        f"top, {height:g} units above the ground. drystone {plan.version}, seed {plan.seed}."
+    )
+    drawing = with_statics(assembly)
+    drawing = replace(drawing, items=tuple(placed(drawing.items, factor)))
     sheet = _Sheet(width, height, ET.SubElement(root, "defs"))
     for layer in LAYERS:
         group = {"id": layer, "inkscape:groupmode": "layer", "inkscape:label": layer}
@@ -74,7 +85,7 @@ def svg_bytes(drawing: Drawing, size: Point, unit: str, title: str, description:
             for item in items:
                 sheet.add(element, item)
     ET.indent(root, " ")
-    return b'<?xml version="1.0" encoding="UTF-8"?>\n' + ET.tostring(root) + b"\n"
+    return {"wall.svg": b'<?xml version="1.0" encoding="UTF-8"?>\n' + ET.tostring(root) + b"\n"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -161,14 +172,17 @@ _LAYERS = {
 """Names and colours (AutoCAD's index)."""
 
 
-def dxf_bytes(
-    ezdxf: Any, drawing: Drawing, size: Point, *, metric: bool, about: Sequence[str]
-) -> bytes:
-    """Return a drawing as DXF; equal drawings give equal bytes.
-
-    It is in metres, or without a unit; hatched areas are left out.  `about` is written below the
-    wall.  Whoever asks has loaded ezdxf, which is an extra.
-    """
+def dxf(assembly: Assembly, settings: ExportSettings) -> Files:
+    """Return wall.dxf; equal walls give equal bytes.  E185 when ezdxf is not installed."""
+    ezdxf = load_extra("ezdxf", "cad", "E185", "wall.dxf")
+    plan, metric = assembly.plan, assembly.unit == "m"
+    unit = "Unit: 1 metre" if metric else "Not to scale: the unit is 1 px of the source image"
+    about = (
+        one_line(_name(assembly, settings)),
+        f"{unit}. x from the left end, y from the ground.",
+        f"drystone {plan.version}, seed {plan.seed}. Numbers are steps of construction.",
+    )
+    drawing, (width, height) = with_statics(assembly), assembly.size
     before = ezdxf.options.write_fixed_meta_data_for_testing
     ezdxf.options.write_fixed_meta_data_for_testing = True  # no dates, no ids by chance
     try:
@@ -181,7 +195,7 @@ def dxf_bytes(
             layer = doc.layers.add(name, color=colour)
             if name not in shown:
                 layer.off()
-        space, (width, height) = doc.modelspace(), size
+        space = doc.modelspace()
         letter = 0.03 * max(height, 0.2 * width)
         for item in drawing.items:
             _add(space, item, letter)
@@ -196,7 +210,7 @@ def dxf_bytes(
         doc.classes.classes = dict(sorted(doc.classes.classes.items()))
         with StringIO() as text:
             doc.write(text)
-            return text.getvalue().encode(doc.output_encoding)
+            return {"wall.dxf": text.getvalue().encode(doc.output_encoding)}
     finally:
         ezdxf.options.write_fixed_meta_data_for_testing = before
 
@@ -243,3 +257,7 @@ def _tell(entity: Any, name: str, step: int | None = None, angle_deg: float = 0.
     if step is not None:
         data += [(1071, step), (1040, angle_deg)]
     entity.set_xdata(APPLICATION, data)
+
+
+def _name(assembly: Assembly, settings: ExportSettings) -> str:
+    return settings.title or str(assembly.plan.source.get("path") or "dry-stone wall")
