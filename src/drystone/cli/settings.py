@@ -4,7 +4,7 @@ import argparse
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
-from dataclasses import dataclass, fields, is_dataclass
+from dataclasses import asdict, dataclass
 from itertools import chain
 from pathlib import Path
 from typing import Any
@@ -12,6 +12,7 @@ from typing import Any
 from drystone.cli.numbers import positive, share, whole_from
 from drystone.errors import InputError, UsageError
 from drystone.io.files import file_bytes, foreign
+from drystone.model.settings import flat, nested
 from drystone.model.stone import StoneSet
 from drystone.planner.search_settings import AIMS, UNLIMITED
 from drystone.planner.settings import METHODS, PlannerSettings, method_settings
@@ -80,9 +81,7 @@ def _setting(text: str) -> dict[str, Any]:
         read = float(value)
     with suppress(tomllib.TOMLDecodeError):
         read = tomllib.loads(f"value = {value}")["value"]
-    for part in reversed(name.strip().split(".")):
-        read = {part: read}
-    return dict(read)
+    return nested(name.strip().split("."), read)
 
 
 def _together(changes: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
@@ -150,16 +149,13 @@ def recorded_method(arguments: argparse.Namespace) -> str:
     except UsageError:
         return str(arguments.method)  # it does not stand alone
     whole = all(one == made[0] for one in made)
-    apart = {name: _differences(made[0], method) for name, method in METHODS.items()}
+    own = dict(flat(asdict(made[0])))
+    apart = {
+        name: sum(own[path] != value for path, value in flat(asdict(method)))
+        for name, method in METHODS.items()
+    }
     nearest = apart[arguments.method] == min(apart.values())
     return str(arguments.method) if nearest or not whole else "custom"
-
-
-def _differences(one: object, other: object) -> int:
-    """Count the values in which settings differ."""
-    if not is_dataclass(one):
-        return int(one != other)
-    return sum(_differences(getattr(one, f.name), getattr(other, f.name)) for f in fields(one))
 
 
 def _blamed(error: UsageError, where: str) -> UsageError:

@@ -8,7 +8,7 @@ import os
 import re
 import reprlib
 import types
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from operator import index
 from pathlib import Path
 from typing import Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
@@ -115,6 +115,31 @@ def _names(settings: Any) -> Iterator[str]:
         yield field.name
         if dataclasses.is_dataclass(value := getattr(settings, field.name)):
             yield from (f"{field.name}.{name}" for name in _names(value))
+
+
+def flat(
+    settings: Mapping[str, Any], above: tuple[str, ...] = ()
+) -> Iterator[tuple[tuple[str, ...], Any]]:
+    """Yield nested settings one by one, with the names that lead to each, the outer first.
+
+    >>> dict(flat({"mu": 0.58, "placement": {"rule": "eq12"}}))
+    {('mu',): 0.58, ('placement', 'rule'): 'eq12'}
+    """
+    for name, value in settings.items():
+        if isinstance(value, Mapping):
+            yield from flat(value, (*above, name))
+        else:
+            yield (*above, name), value
+
+
+def nested(path: Sequence[str], value: Any) -> dict[str, Any]:
+    """Return a setting within those that its names lead through.
+
+    >>> nested(("placement", "rule"), "eq12")
+    {'placement': {'rule': 'eq12'}}
+    """
+    outer, *inner = path
+    return {outer: nested(inner, value) if inner else value}
 
 
 def ranged(

@@ -1,6 +1,6 @@
 """What a plan says of itself: its settings, its site, and its lengths in px."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from drystone.errors import PlanError, UsageError
 from drystone.kernels.polygons import on_grid
 from drystone.model.plan import Plan, Point
+from drystone.model.settings import flat, nested
 from drystone.model.site import MAX_SITE_PX, Site
 from drystone.planner.settings import METHODS, PlannerSettings
 from drystone.verify.report import Problem
@@ -35,7 +36,7 @@ def plan_settings(plan: Plan) -> tuple[PlannerSettings, list[Problem]]:
     for path in refused:
         value = _value(instead, path)
         if value is not ...:
-            settings, _ = _usable(settings, _nested(path, value))
+            settings, _ = _usable(settings, nested(path, value))
     whose = f"of the method {plan.method!r}" if plan.method in METHODS else "the package's own"
     message = f"the settings cannot be used: {refusal} {_instead(settings, refused, whose)}"
     return settings, [Problem("E217", None, message)]
@@ -45,31 +46,17 @@ def _usable(
     settings: PlannerSettings, asked: Mapping[str, Any]
 ) -> tuple[PlannerSettings, list[_Path]]:
     """Take over each setting that can be; return the names of the others too."""
-    left, before = list(_single(asked)), -1
+    left, before = list(flat(asked)), -1
     # Some are only allowed beside others (a policy beside a budget of 1), in whatever order.
     while left and len(left) != before:
         before, refused = len(left), []
         for path, value in left:
             try:
-                settings = settings.updated(_nested(path, value))
+                settings = settings.updated(nested(path, value))
             except UsageError:
                 refused.append((path, value))
         left = refused
     return settings, [path for path, _ in left]
-
-
-def _single(asked: Mapping[str, Any], above: _Path = ()) -> Iterator[tuple[_Path, Any]]:
-    """Yield settings one by one, with the names that lead to them."""
-    for name, value in asked.items():
-        path = (*above, name)
-        if isinstance(value, Mapping):
-            yield from _single(value, path)
-        else:
-            yield path, value
-
-
-def _nested(path: _Path, value: Any) -> dict[str, Any]:
-    return {path[0]: value if len(path) == 1 else _nested(path[1:], value)}
 
 
 def _value(settings: Any, path: _Path) -> Any:

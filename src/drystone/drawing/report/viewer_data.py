@@ -4,6 +4,7 @@ Lengths are in ``unit``, x to the right (from the left end of a plan, else as in
 model) and y up from the ground.
 """
 
+import json
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict
 from importlib.metadata import version
@@ -26,6 +27,7 @@ from drystone.errors import Notice, counted
 from drystone.io.plan_json import plan_digest
 from drystone.kernels.polygons import Points
 from drystone.model.plan import Plan, Point, StoneStep
+from drystone.model.settings import flat
 from drystone.model.wall import Labels
 from drystone.statics.failing.mechanism import Failure, Names
 from drystone.statics.model import RigidBlockModel
@@ -97,7 +99,8 @@ def view_of_assembly(
         box=rounded((*corners.min(axis=0), *corners.max(axis=0)), digits),
         parts=_planned_parts(assembly, digits), inputs=[list(one) for one in content.inputs(plan)],
         timings=[[name, round(seconds, 3)] for name, seconds in (timings or {}).items()],
-        settings=[list(pair) for pair in content.flat_settings(plan.settings)],
+        settings=[[".".join(path), json.dumps(value, ensure_ascii=False)]
+                  for path, value in flat(plan.settings)],
         assumptions=content.assumptions(plan), summary=f"{summary}.", stands=stands,
     )  # fmt: skip
 

@@ -1,10 +1,9 @@
 """What the report says: numbers of a plan with the words that explain them."""
 
-import json
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Literal
 
 from drystone.io.published import SETS
 from drystone.model.plan import Plan
@@ -253,19 +252,6 @@ def _layout(plan: Plan) -> tuple[ResultCard, ...]:
         ResultCard("", "Wedges", wedges, "lower",
              "Small stones pushed in under others, and their area. Each has to be found or cut."),
     )  # fmt: skip
-
-
-def flat_settings(settings: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, str]]:
-    """Yield every parameter with the path of its name.
-
-    >>> dict(flat_settings({"mu": 0.58, "placement": {"rule": "eq12"}}))
-    {'mu': '0.58', 'placement.rule': '"eq12"'}
-    """
-    for name, value in settings.items():
-        if isinstance(value, Mapping):
-            yield from flat_settings(value, f"{prefix}{name}.")
-        else:
-            yield f"{prefix}{name}", json.dumps(value, ensure_ascii=False)
 
 
 MASONS_WALLS = {
