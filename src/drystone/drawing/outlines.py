@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from drystone.kernels.boundary import boundary_of
+from drystone.kernels.outline import pixel_rings
 from drystone.kernels.polygons import area_and_centroid, turn
 from drystone.kernels.raster import Mask
 from drystone.model.wall import Labels, Wall
@@ -94,10 +94,9 @@ def pixel_loops(mask: Mask) -> tuple[Loop, ...]:
 
     The origin is its lower left corner.  Pixels that touch only at a corner get loops of their own.
     """
-    found = boundary_of(np.pad(mask, 1).astype(np.int64))
     loops = []
-    for chain in np.split(found.nodes, found.begins[1:-1]) if len(found.labels) else ():
-        points = np.column_stack([chain[:-1, 1] - 1.0, len(mask) + 1.0 - chain[:-1, 0]])
+    for ring in pixel_rings(mask) if mask.any() else ():
+        points = ring[:-1]
         steps = np.roll(points, -1, axis=0) - points
         loops.append(points[(steps != np.roll(steps, 1, axis=0)).any(axis=1)])
     return tuple(sorted(loops, key=lambda loop: tuple(loop[0])))
