@@ -17,6 +17,7 @@ from drystone.errors import ExitCode, Notice, UsageError, counted
 from drystone.io.patches import cut
 from drystone.io.photo_beside import LABELS, PAGE, SIDECAR, PhotoSidecar, write_sidecar
 from drystone.io.photo_file import Photo, read_photo
+from drystone.io.wall_image import write_labels
 from drystone.model.stone_size import StoneSize, median_sides, sizes_of
 from drystone.photo.layout import MarkerLayout, parse_layout, parse_size_m
 from drystone.photo.segment_doubts import (
@@ -141,8 +142,10 @@ def _write(
     from drystone.drawing.tracing.page import rings_of, write_outline_page  # noqa: PLC0415
 
     labels, px_per_m = result.found.labels, result.px_per_m
-    _save_image(labels, folder / LABELS, "PNG")
-    _save_image(result.picture, folder / PHOTO, "JPEG", quality=QUALITY)
+    write_labels(labels.astype(np.uint32), folder / LABELS)
+    picture = io.BytesIO()
+    Image.fromarray(result.picture).save(picture, "JPEG", quality=QUALITY)
+    write_whole(folder / PHOTO, picture.getvalue())
     height, width = labels.shape
     write_sidecar(PhotoSidecar(width, height, px_per_m, PHOTO, details), folder)
     doubtful = tuple(sorted({stone for doubt in doubts for stone in doubt.stones}))
@@ -156,12 +159,6 @@ def _write(
         name=PHOTO, kind="stones", px_per_m=px_per_m, doubts=doubts,
         details={name: details[name] for name in KEPT},
     )  # fmt: skip
-
-
-def _save_image(values: np.ndarray[Any, Any], path: Path, kind: str, **settings: Any) -> None:
-    file = io.BytesIO()
-    Image.fromarray(values).save(file, kind, **settings)
-    write_whole(path, file.getvalue())
 
 
 def _details(
