@@ -1,18 +1,13 @@
 """Joints between the stones of a wall, found along rows and columns, and those that go on."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
-import shapely
 from numpy.typing import NDArray
 
 from drystone.kernels.polygons import Points
-
-if TYPE_CHECKING:
-    from drystone.craft.masonry import Masonry
 
 STEEPEST = 1.0
 """A joint that rises more than it runs is a head joint, else a bed joint: 45 degrees."""
@@ -113,15 +108,16 @@ class Joint:
         return float(self.points[-1, 0]) + 0.5 * self.spacing
 
 
-def joints(scanned: Scan, axis: int, widest: float, wedges: frozenset[int]) -> tuple[Joint, ...]:
+def joints(scanned: Scan, axis: int, widest: float, stones: Collection[int]) -> tuple[Joint, ...]:
     """Find the joints that lines of a scan cross: head joints by rows, bed joints by columns.
 
-    Gaps are `widest` at most, but for the thickness of wedges, which are no neighbours.  Two stones
-    have several joints where theirs changes between rising and running, or is interrupted.
+    Gaps are `widest` at most, but for the thickness of wedges: these are what is not among the ids
+    of `stones`, and no neighbours.  Two stones have several joints where theirs changes between
+    rising and running, or is interrupted.
     """
     sampled: dict[tuple[int, int], list[tuple[int, float]]] = {}
     for line, runs in enumerate(scanned.runs):
-        for pair, middle, gap in _neighbours(runs, wedges):
+        for pair, middle, gap in _neighbours(runs, stones):
             if gap <= widest:
                 sampled.setdefault(pair, []).append((line, middle))
     found = []
@@ -136,11 +132,11 @@ def joints(scanned: Scan, axis: int, widest: float, wedges: frozenset[int]) -> t
 
 
 def _neighbours(
-    runs: tuple[Run, ...], wedges: frozenset[int]
+    runs: tuple[Run, ...], stones: Collection[int]
 ) -> Iterator[tuple[tuple[int, int], float, float]]:
     """Yield pairs of stones that follow each other on a line, the middle and width of their gap."""
-    filled = [run for run in runs if run.id in wedges]
-    for one, other in pairwise(run for run in runs if run.id not in wedges):
+    filled = [run for run in runs if run.id not in stones]
+    for one, other in pairwise(run for run in runs if run.id in stones):
         if one.id == other.id:
             continue
         between = sum(
@@ -194,73 +190,3 @@ class Chain:
         return np.concatenate(
             [np.vstack([joint.bottom, joint.points, joint.top]) for joint in self.joints]
         )
-
-
-def chains(masonry: "Masonry") -> tuple[Chain, ...]:
-    """Join the head joints that go on above each other.
-
-    A joint goes on when the next one begins no farther to the side than the offset of the
-    settings and no farther above than a hole, and no stone lies between them.  Where several
-    could go on, the one straight above does.
-    """
-    heads = masonry.heads
-    above: dict[int, int] = {}
-    below: dict[int, int] = {}
-    for _, lower, upper in sorted(_links(masonry)):
-        if lower not in above and upper not in below:
-            above[lower], below[upper] = upper, lower
-    found = []
-    for index in range(len(heads)):
-        if index not in below:
-            place, chain = index, [index]
-            while place in above:
-                place = above[place]
-                chain.append(place)
-            found.append(Chain(tuple(heads[i] for i in chain)))
-    return tuple(found)
-
-
-def _links(masonry: "Masonry") -> list[tuple[tuple[float, float], int, int]]:
-    """Return how far apart two joints are that may be one, and their indices, lower first."""
-    heads = masonry.heads
-    if not heads:
-        return []
-    settings, height = masonry.settings, masonry.mean_height
-    bottoms = np.array([joint.bottom for joint in heads])
-    tops = np.array([joint.top for joint in heads])
-    aside, up = (1e-9 + settings.offset) * height, (1e-9 + settings.hole) * height
-    # The ends of two joints that meet overlap by the rounding of stones to lines of the scan.
-    low, high = tops - (aside, 2.5 * masonry.rows.spacing), np.add(tops, (aside, up))
-    near = shapely.STRtree(shapely.points(bottoms)).query(shapely.box(*low.T, *high.T))
-    stones = shapely.STRtree(list(masonry.shapes.values()))
-    ids = list(masonry.shapes)
-    found = []
-    for lower, upper in near.T.tolist():
-        one, other = heads[lower], heads[upper]
-        # Else the joints are beside each other with the sides changed over.
-        climbs = one.first != other.second and one.second != other.first
-        if lower == upper or not climbs:
-            continue
-        way = shapely.LineString([tops[lower], bottoms[upper]])
-        four = {one.first, one.second, other.first, other.second}
-        if not _crossed(masonry, way, four, {ids[i] for i in stones.query(way)}):
-            across, along = np.abs(bottoms[upper] - tops[lower]).tolist()
-            cost = round(across / height, 6), round(along / height, 6)
-            found.append((cost, lower, upper))
-    return found
-
-
-def _crossed(masonry: "Masonry", way: shapely.LineString, four: set[int], near: set[int]) -> bool:
-    """Whether one of the stones near the way from one joint to another lies on it.
-
-    The way may cut corners of the stones of the joints, as far to the side as they may be apart.
-    Any other stone on it lies between them, as far as the scan tells it from a touch: each end of
-    the way may lie half a line too high or low.
-    """
-    spacing = masonry.rows.spacing
-    of_joints = masonry.settings.offset * masonry.mean_height + 2.5 * spacing
-    own = shapely.union_all([masonry.shapes[i] for i in four])
-    if shapely.intersection(own, way).length > of_joints:
-        return True
-    others = [masonry.shapes[i] for i in near - four]
-    return bool((shapely.length(shapely.intersection(others, way)) > 0.75 * spacing).any())

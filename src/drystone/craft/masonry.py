@@ -9,7 +9,7 @@ import shapely
 
 from drystone.contacts.blocks import model_from_labels
 from drystone.contacts.outlines import outlines_of_labels
-from drystone.craft.joints import Chain, Joint, Scan, chains, joints, scan
+from drystone.craft.joints import Chain, Joint, Scan, joints, scan
 from drystone.craft.settings import CraftSettings
 from drystone.errors import InputError, UsageError
 from drystone.kernels.polygons import Points, Polygons, area_and_centroid, no_polygons
@@ -168,25 +168,37 @@ class Masonry:
                 )
         return scan(self.loops, axis, self.settings.sample * self.mean_height)
 
-    def _joints(self, axis: int, widest: float) -> tuple[Joint, ...]:
-        wedges = frozenset(self.wedge_ids)
-        scanned = (self.rows, self.columns)[axis]
-        return joints(scanned, axis, widest * self.mean_height, wedges)
-
     @cached_property
     def heads(self) -> tuple[Joint, ...]:
         """Head joints: between a stone and the one to the right of it."""
-        return self._joints(0, self.settings.slot)
+        return joints(self.rows, 0, self.settings.slot * self.mean_height, self.stones)
 
     @cached_property
     def beds(self) -> tuple[Joint, ...]:
         """Bed joints: between a stone and the one above it."""
-        return self._joints(1, self.settings.joint)
+        return joints(self.columns, 1, self.settings.joint * self.mean_height, self.stones)
 
     @cached_property
     def chains(self) -> tuple[Chain, ...]:
-        """The head joints, those that go on above each other joined to one."""
-        return chains(self)
+        """The head joints, those that go on above each other joined to one.
+
+        A joint goes on when the next one begins no farther to the side than the offset of the
+        settings and no farther above than a hole, and no stone lies between them.  Where several
+        could go on, the one straight above does.
+        """
+        above: dict[int, int] = {}
+        below: dict[int, int] = {}
+        for _, lower, upper in sorted(_links(self)):
+            if lower not in above and upper not in below:
+                above[lower], below[upper] = upper, lower
+        found = []
+        for index in range(len(self.heads)):
+            if index not in below:
+                chain = [index]
+                while chain[-1] in above:
+                    chain.append(above[chain[-1]])
+                found.append(Chain(tuple(self.heads[i] for i in chain)))
+        return tuple(found)
 
     @cached_property
     def supports(self) -> Mapping[int, tuple[tuple[int, float, float], ...]]:
@@ -259,3 +271,49 @@ def _open(loop: Points) -> Points:
         loop = loop[:-1]
     x, y = loop.T
     return loop if float(x @ np.roll(y, -1) - y @ np.roll(x, -1)) >= 0 else loop[::-1]
+
+
+def _links(masonry: Masonry) -> list[tuple[tuple[float, float], int, int]]:
+    """Return how far apart two joints are that may be one, and their indices, lower first."""
+    heads = masonry.heads
+    if not heads:
+        return []
+    settings, height = masonry.settings, masonry.mean_height
+    bottoms = np.array([joint.bottom for joint in heads])
+    tops = np.array([joint.top for joint in heads])
+    aside, up = (1e-9 + settings.offset) * height, (1e-9 + settings.hole) * height
+    # The ends of two joints that meet overlap by the rounding of stones to lines of the scan.
+    low, high = tops - (aside, 2.5 * masonry.rows.spacing), np.add(tops, (aside, up))
+    near = shapely.STRtree(shapely.points(bottoms)).query(shapely.box(*low.T, *high.T))
+    stones = shapely.STRtree(list(masonry.shapes.values()))
+    ids = list(masonry.shapes)
+    found = []
+    for lower, upper in near.T.tolist():
+        one, other = heads[lower], heads[upper]
+        # Else the joints are beside each other with the sides changed over.
+        climbs = one.first != other.second and one.second != other.first
+        if lower == upper or not climbs:
+            continue
+        way = shapely.LineString([tops[lower], bottoms[upper]])
+        four = {one.first, one.second, other.first, other.second}
+        if not _crossed(masonry, way, four, {ids[i] for i in stones.query(way)}):
+            across, along = np.abs(bottoms[upper] - tops[lower]).tolist()
+            cost = round(across / height, 6), round(along / height, 6)
+            found.append((cost, lower, upper))
+    return found
+
+
+def _crossed(masonry: Masonry, way: shapely.LineString, four: set[int], near: set[int]) -> bool:
+    """Whether one of the stones near the way from one joint to another lies on it.
+
+    The way may cut corners of the stones of the joints, as far to the side as they may be apart.
+    Any other stone on it lies between them, as far as the scan tells it from a touch: each end of
+    the way may lie half a line too high or low.
+    """
+    spacing = masonry.rows.spacing
+    of_joints = masonry.settings.offset * masonry.mean_height + 2.5 * spacing
+    own = shapely.union_all([masonry.shapes[i] for i in four])
+    if shapely.intersection(own, way).length > of_joints:
+        return True
+    others = [masonry.shapes[i] for i in near - four]
+    return bool((shapely.length(shapely.intersection(others, way)) > 0.75 * spacing).any())
