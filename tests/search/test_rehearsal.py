@@ -1,5 +1,6 @@
 """Walls that are built again with a builder's errors, in open loop and in closed loop."""
 
+from dataclasses import replace
 from importlib.util import find_spec
 
 import numpy as np
@@ -168,4 +169,9 @@ def test_a_wall_as_it_was_built_is_tilted():
     assert tilt_as_built(run) == pytest.approx(1.0, abs=0.1)  # it slides
     # A column that is thrice as high as wide topples at a third; one on an edge falls at once.
     high = rehearse([[(1, box(0.0, 0.0, 20.0, 60.0))]], NONE, np.random.default_rng(0))
-    assert tilt_as_built(high) == pytest.approx(0.333 / 0.58, abs=0.05)
+    topples = pytest.approx(0.333 / 0.58, abs=0.05)
+    assert tilt_as_built(high) == topples
+    # A wedge that comes out is lost, a stone is not.
+    out = replace(high, blocks=(*high.blocks, (2, box(50.0, 40.0, 5.0, 5.0))))
+    assert tilt_as_built(out) == topples
+    assert tilt_as_built(replace(out, stones=(*high.stones, replace(high.stones[0], stone=2)))) == 0

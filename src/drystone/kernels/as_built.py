@@ -121,9 +121,15 @@ class BuiltWall(Heap):
         return None if number is None or self.places[number] < 0 else self.built[number]
 
     def changed(self, before: BuiltWall) -> list[tuple[int, Built, Built | None]]:
-        """List the blocks of a wall before that do not lie as they did: then and now, or None."""
-        told = ((i, one, self.get(i)) for i, one in before.laid.items())
-        return [one for one in told if one[1] is not one[2]]
+        """List what lies elsewhere than in the wall this was made of: then and now, or None."""
+        told = []
+        was: BuiltWall = before
+        for place in range(was.size):
+            number = was.order[place]
+            now = self.built[number] if self.places[number] >= 0 else None
+            if now is not was.built[number]:
+                told.append((was.ids[number], was.built[number], now))
+        return told
 
     def put(self, pieces: Iterable[tuple[int, Built]]) -> BuiltWall:
         """Put blocks down on what does not move; those that rest nowhere are left out.

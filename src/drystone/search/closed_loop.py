@@ -275,8 +275,14 @@ def tilt_as_built(run: RehearsalRun, mu: float = 0.58) -> float:
     """Return by how much what has not fallen of a wall may be tilted, over mu: the smaller side.
 
     Its outlines as they lie are let go in the rigid-body engine (extra `physics`) and tilted from
-    where they come to rest.  0 where some fall then.
+    where they come to rest.  0 where stones fall then.  Wedges alone may be lost.
     """
-    built = build_up([run.blocks], mu, PATIENT)
+    stones, lies = {end.stone for end in run.stones}, run.blocks
+    while True:
+        built = build_up([lies], mu, PATIENT)
+        lost = {move.id for move in built.moves if move.fell}
+        if not lost or lost & stones:
+            break
+        lies = tuple((i, corners) for i, corners in lies if i not in lost)
     alphas = [one.alpha for one in tilt_of(built, (TILT,)) or () if one.alpha is not None]
     return min(alphas) / mu if alphas else 0.0
