@@ -48,6 +48,11 @@ def test_what_finds_no_rest_falls_and_how_near_to_that_another_is():
     assert fallen_share(0.0, 0.0, 348.0, 4.0) == pytest.approx(1.0)
 
 
+def test_what_rests_nowhere_else_is_lifted_by_a_quarter_of_its_size_and_more():
+    rest, _ = put(brick(0.0, 10.0), box(-30.0, -11.8, 60.0))
+    assert (rest.x, rest.y, rest.angle_deg) == pytest.approx((0.0, 18.2, 0.0), abs=0.1)
+
+
 def test_neighbours_on_both_sides_are_pushed_apart_and_push_on():
     walls = box(-58.0, 0.0), box(18.0, 0.0), box(58.5, 0.0), box(110.0, 0.0)
     rest, pushed = put(brick(0.0, 10.0), *walls)
@@ -117,6 +122,17 @@ def test_a_stone_on_a_post_is_held_by_a_beam_that_another_bears_too(once, end, f
     other = [] if falls else [[(4, box(-30.0, 0.0, 20.0, 20.0))]]
     run = once([*other, post, stone, beam], NONE, np.random.default_rng(0))
     assert any(one.fallen for one in run.stones) == falls
+
+
+@BOTH
+def test_a_cobble_is_held_where_what_lies_on_it_soon_lies_on_others(once):
+    """The brick's load rolls the cobble, but the beam then comes to lie on the whole pier."""
+    pier = np.array([[0, 0], [60, 0], [60, 29], [44, 30], [0, 30]], float)
+    round_below = [[78, 0], [82, 0], [94, 8], [96, 22], [90, 28], [68, 30], [64, 10]]
+    cobble = np.array(round_below, float)
+    beam, brick = box(0.0, 30.0, 110.0, 12.0), box(50.0, 42.0, 30.0, 60.0)
+    groups = [[(i, corners)] for i, corners in enumerate((pier, cobble, beam, brick))]
+    assert once(groups, NONE, np.random.default_rng(0)).first_fall is None
 
 
 def test_a_plank_does_not_rock_under_a_stone_that_cannot_rise():

@@ -125,6 +125,12 @@ class SlowWall:
         elif found.status is not Status.OVERLAPS:
             del again[block]
         after, rest = left.put(again.items()), left.laid.get(block)
+        if block not in again and rest is None:
+            own, at = built.corners - (built.x, built.y), (built.x, built.y, 0.0)
+            alone = settle(own, edges, at, below, 0.0, rules).status is Status.RESTS
+            ends = [(after.laid.get(i), one) for i, one in again.items()]
+            if alone and all(end is not None and is_near(end, one) for end, one in ends):
+                return self
         if rest is not None and not again.keys() <= after.laid.keys():
             for i in again.keys() - after.laid.keys():
                 way = (built.x, built.y), (rest.x, rest.y), rest.angle_deg - built.angle_deg
@@ -135,6 +141,12 @@ class SlowWall:
                 return self
         after.find_beds()
         return after
+
+
+def is_near(one, other):
+    """Less than half of a fall from each other."""
+    way = math.hypot(one.x - other.x, one.y - other.y) / one.size
+    return way <= 0.125 and abs(one.angle_deg - other.angle_deg) <= 6.0
 
 
 def load(block, laid, beds, burden):

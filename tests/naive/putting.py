@@ -11,11 +11,11 @@ from drystone.kernels.settling import Status, settle
 ALONG = np.array((1.0, 0.0))
 
 
-def put_down(outline, edges, at, around, rules, lifts, most, gap):
+def put_down(outline, edges, at, around, rules, lifts, last, most, gap):
     """Return how it rests, or None, and by how much others are pushed; None without room."""
     room, others = False, [around.polygon(i) for i in range(len(around))]
-    for sticks in (True, False):
-        for lift in lifts:
+    for sticks, some in ((True, lifts), (False, lifts), (True, last)):
+        for lift in some:
             x, y = at[0], at[1] + lift
             shift, moved, pushed = squeezed_in(outline + np.array((x, y)), others, most, gap)
             pose, heap = (x + shift, y, 0.0), no_polygons().added(moved)

@@ -45,6 +45,9 @@ OVERLAPS = cython.declare(cython.int, 2)
 # A block bears on what it touches where the normal of the contact goes up by at least so much.
 UPWARD = cython.declare(cython.double, 0.3)
 
+# What moves by no more than so much of the way to a fall has stayed.
+HALF = cython.declare(cython.double, 0.5)
+
 # The numbers of a row of a bed: a point, the number of the block below (-1 for the ground), and by
 # how much the normal goes up there.
 X = cython.declare(cython.Py_ssize_t, 0)
@@ -59,6 +62,7 @@ class WayDown(NamedTuple):
 
     rules: SettlingRules
     lifts: list[float]  # so much higher it is let go where it overlaps others
+    last_lifts: list[float]  # where it rests with none of these
     most: float  # so far it is moved aside or pushed at most
     gap: float  # what it is moved away from keeps this gap
 
@@ -308,12 +312,12 @@ def lay(wall, number, built):
 
     Beds of what was pushed, and of what lies on that, are not known any more.
     """
-    rules, lifts, most, gap = wall.how(built.size)
+    rules, lifts, last, most, gap = wall.how(built.size)
     outline = turn(built.outline, built.angle_deg)
     edges = polygon_edges(outline)
     way: Way = way_of(outline, edges, rules)
     press: Press = press_of(way, wall, most, gap)
-    status: cython.int = put_down(press, built.x, built.y, lifts)
+    status: cython.int = put_down(press, built.x, built.y, lifts, last)
     if status != RESTS:
         return status
     kept: list = []
@@ -558,6 +562,10 @@ def rolled(wall, number, loads):
         status = let_go(way, wall, x, y, 0.0)
         if status == RESTS:
             break
+    rests_alone: cython.bint = False
+    if status not in (RESTS, OVERLAPS):
+        own: Way = way_of(built.corners - (built.x, built.y), edges, rules)
+        rests_alone = let_go(own, wall, built.x, built.y, 0.0) == RESTS
     move_doubles(wall.boxes, 0, boxes, 0, 4 * wall.size)
     if status == RESTS and way.here.x == x and way.here.y == y and way.here.turn == 0.0:
         return wall
@@ -575,6 +583,8 @@ def rolled(wall, number, loads):
         (wall.ids[one], wall.built[one]) for one in lifted if one != number or status == OVERLAPS
     ]
     after: BuiltWall = laid_too(below, again)
+    if rests_alone and all(is_near(wall, after.get(block), one) for block, one in again):
+        return wall  # what lies on it stays without it, so that it bears as little as it can
     lost = [block for block, one in again if after.get(block) is None]
     if rest is not None and lost:
         # What finds no place where it was goes with the block.
@@ -591,6 +601,16 @@ def rolled(wall, number, loads):
                     return wall
     find_beds(after)
     return after
+
+
+def is_near(wall: BuiltWall, one: Built | None, other: Built) -> bool:
+    """Say whether a block lies less than half of the way to a fall from where it lay."""
+    if one is None:
+        return False
+    rules = wall.how(one.size).rules
+    turn_rad = math.radians(wrap_deg(one.angle_deg - other.angle_deg))
+    way = math.hypot(one.x - other.x, one.y - other.y)
+    return max(way / rules.shift, abs(turn_rad) / rules.turn) <= HALF
 
 
 def moved_with(one: Built, start: Pair, end: Pair, turn_deg: float) -> Built:

@@ -14,7 +14,7 @@ cdef class Press:
     cdef double bottom, top, most, gap
 
 
-cdef int put_down(Press press, double x, double start_y, list lifts) except -1
+cdef int put_down(Press press, double x, double start_y, list lifts, list last) except -1
 cdef Press press_of(Way way, Heap heap, double most, double gap)
 cdef int lie(Press press, dict before, dict now) except -1
 cdef void move(Press press, Py_ssize_t i, double shift) noexcept

@@ -29,21 +29,24 @@ BESIDE = cython.declare(cython.double, 0.3)
 LINES = cython.declare(cython.Py_ssize_t, 32)
 
 
-def put_down(press, x, start_y, lifts):
+def put_down(press, x, start_y, lifts, last):
     """Let a block come to rest, lifted by the least of some ways with which it does.
 
-    It is moved, and others are pushed, by no more than `most`, and what overlapped it keeps a gap.
-    Returned is whether it rests, falls, or has no room: it overlaps with all lifts.  Only where it
-    rests, the others lie as they were pushed.
+    The `last` lifts are for what rests with none of the others.  It is moved, and others are
+    pushed, by no more than `most`, and what overlapped it keeps a gap.  Returned is whether it
+    rests, falls, or has no room: it overlaps with all lifts.  Only where it rests, the others lie
+    as they were pushed.
     """
     way: Way = press.block
     pressed: dict = {}
     now: dict = {}
     room: cython.bint = False
-    for sticks in (True, False):
-        way.sticks = sticks
+    steps = 1
+    for way.sticks, some in ((True, lifts), (False, lifts), (True, last)):
+        if not way.sticks and not steps:
+            continue  # it overlaps wherever it is let go
         steps, least = 0, 0.0
-        for lift in lifts:
+        for lift in some:
             if lift < least:
                 continue
             y: cython.double = start_y + lift
@@ -63,8 +66,6 @@ def put_down(press, x, start_y, lifts):
             if not way.made:
                 # A lift takes off no more than itself; that it gives other room aside is rare.
                 least = lift - way.here.least - way.overlap
-        if not steps:
-            break  # it overlaps wherever it is let go
     lie(press, now, {})
     return FALLS if room else OVERLAPS
 

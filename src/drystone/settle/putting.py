@@ -21,6 +21,9 @@ ASIDE = 0.3
 LIFTS = (0.0, 0.01, 0.02, 0.04, 0.06, 0.08, 0.1, 0.13, 0.16, 0.2)
 """So much higher, over its size, a block is let go where it overlaps others."""
 
+LAST_LIFTS = (0.25, 0.3)
+"""The same for what rests with none of these: on what leans, it may end less high."""
+
 STEP, TOUCHING, OVERLAP = 0.01, 0.003, 0.05
 """Over the size: first steps of settling, the gap up to which a contact holds, and how deep a
 block may overlap where it is let go.  What is built with errors touches at few points."""
@@ -34,9 +37,9 @@ def bare_wall(mu: float, settle: SettleSettings) -> BuiltWall:
 
     @lru_cache(maxsize=4096)
     def how(size: float) -> WayDown:
-        lifts = [lift * size for lift in LIFTS]
+        lifts, last = ([lift * size for lift in some] for some in (LIFTS, LAST_LIFTS))
         rules = settling_rules(size, mu, settle)
-        return WayDown(rules, lifts, ASIDE * size, 2.0 * settle.clearance_px)
+        return WayDown(rules, lifts, last, ASIDE * size, 2.0 * settle.clearance_px)
 
     return BuiltWall(mu, how)
 
