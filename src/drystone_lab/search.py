@@ -25,7 +25,7 @@ from drystone.search.yard import Yard
 from drystone_lab import second_arrangement as second
 from drystone_lab.paired import median_difference, median_of
 from drystone_lab.planned_walls import SETS, missing_data
-from drystone_lab.runs.spec import Changes, nested, told
+from drystone_lab.runs.spec import Changes, settings_of, told
 from drystone_lab.runs.workers import Crew
 from drystone_lab.table import BENCH, BenchSettings, Cell, Rows, Table, read_rows, worded
 from drystone_lab.walls import BRICKS, SEARCHED, UNSEEN, Target, chosen
@@ -137,7 +137,7 @@ def looked_at_times(
     end = started + times[-1]
     # A budget that is never used up, another one for every seed, so that nothing is left over from
     # a search of another seed.
-    settings = tries(10**9 + seed).updated(nested(changes))
+    settings = tries(10**9 + seed).updated(settings_of(changes))
     width, height = target.size(stones)
     site = Site.from_source(width, height, target.scale)
     first = Planner(stones, site, seed=seed, settings=settings)
@@ -337,7 +337,7 @@ def run(settings: BenchSettings) -> tuple[Table, ...]:
         what = f"{own[0]} cannot be replaced: walls are searched on outlines, for a time."
         cure = "Leave it out; see --only and --seconds."
         raise UsageError("E138", what, where="--settings", cure=cure)
-    method_settings("best").updated(nested(settings.changes))  # E123 for what there is not
+    method_settings("best").updated(settings_of(settings.changes))  # E123 for what there is not
     seconds, count = (0.1, 2) if settings.quick else (20.0, 6)
     times = tuple(sorted(set(settings.seconds))) or (seconds,)
     seeds = range(settings.seed, settings.seed + (settings.seeds or count))

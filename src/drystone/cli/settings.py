@@ -81,7 +81,7 @@ def _setting(text: str) -> dict[str, Any]:
         read = float(value)
     with suppress(tomllib.TOMLDecodeError):
         read = tomllib.loads(f"value = {value}")["value"]
-    return nested(name.strip().split("."), read)
+    return nested([(name.strip().split("."), read)])
 
 
 def _together(changes: Iterable[Mapping[str, Any]]) -> dict[str, Any]:

@@ -132,14 +132,19 @@ def flat(
             yield (*above, name), value
 
 
-def nested(path: Sequence[str], value: Any) -> dict[str, Any]:
-    """Return a setting within those that its names lead through.
+def nested(settings: Iterable[tuple[Sequence[str], Any]]) -> dict[str, Any]:
+    """Nest settings, each with the names that lead to it; the reverse of :func:`flat`.
 
-    >>> nested(("placement", "rule"), "eq12")
-    {'placement': {'rule': 'eq12'}}
+    >>> nested([(("placement", "rule"), "eq12"), (("mu",), 0.58)])
+    {'placement': {'rule': 'eq12'}, 'mu': 0.58}
     """
-    outer, *inner = path
-    return {outer: nested(inner, value) if inner else value}
+    tables: dict[str, Any] = {}
+    for (*above, last), value in settings:
+        table = tables
+        for name in above:
+            table = table.setdefault(name, {})
+        table[last] = value
+    return tables
 
 
 def ranged(

@@ -36,7 +36,7 @@ def plan_settings(plan: Plan) -> tuple[PlannerSettings, list[Problem]]:
     for path in refused:
         value = _value(instead, path)
         if value is not ...:
-            settings, _ = _usable(settings, nested(path, value))
+            settings, _ = _usable(settings, nested([(path, value)]))
     whose = f"of the method {plan.method!r}" if plan.method in METHODS else "the package's own"
     message = f"the settings cannot be used: {refusal} {_instead(settings, refused, whose)}"
     return settings, [Problem("E217", None, message)]
@@ -52,7 +52,7 @@ def _usable(
         before, refused = len(left), []
         for path, value in left:
             try:
-                settings = settings.updated(nested(path, value))
+                settings = settings.updated(nested([(path, value)]))
             except UsageError:
                 refused.append((path, value))
         left = refused

@@ -14,7 +14,7 @@ from drystone.errors import UsageError
 from drystone.planner.settings import method_settings
 from drystone.selection.policies.registry import BUILT_IN, GROUP, PAPER, RULES, no_policy, rule_of
 from drystone_lab import walls as made
-from drystone_lab.runs.spec import STRIPS, Changes, Scalar, flat, nested
+from drystone_lab.runs.spec import STRIPS, Changes, Scalar, changes_of, settings_of
 from drystone_lab.table import BENCH
 from drystone_lab.walls import Target, chosen
 
@@ -86,7 +86,7 @@ def method_named(name: str, changes: Changes = ()) -> tuple[str, Changes]:
             raise no_policy(name, tuple(known))
         method, own = "paper", {} if name == PAPER else {"selection_rule": rule_of(name)}
     merged = tuple((own | dict(changes)).items())
-    method_settings(method).updated(nested(merged))  # E123 for what there is not
+    method_settings(method).updated(settings_of(merged))  # E123 for what there is not
     return method, merged
 
 
@@ -101,4 +101,4 @@ def flat_changes(settings: Mapping[str, Any], where: str) -> Changes:
             what = f"{name} cannot be the same for all methods and walls."
             cure = "Leave it out; --policy names who chooses the stones."
             raise UsageError("E138", what, where=where, cure=cure)
-    return flat(settings)
+    return changes_of(settings)

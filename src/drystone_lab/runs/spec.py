@@ -17,6 +17,7 @@ from drystone.io.published import published_file
 from drystone.io.read_settings import ReadSettings
 from drystone.io.read_stones import read_stones
 from drystone.io.wall_image import read_wall_image
+from drystone.model.settings import flat, nested
 from drystone.model.stone import StoneSet
 from drystone.model.wall import Labels
 from drystone.planner.settings import PlannerSettings, method_settings
@@ -26,35 +27,22 @@ Changes = tuple[tuple[str, Scalar], ...]
 """Settings that an experiment replaces, as flat pairs that can be kept, compared and printed."""
 
 
-def flat(settings: Mapping[str, Any]) -> Changes:
+def changes_of(settings: Mapping[str, Any]) -> Changes:
     """Return nested settings with their names in full, in order.
 
-    >>> flat({"sampling": "full", "placement": {"beta": 0.5}})
+    >>> changes_of({"sampling": "full", "placement": {"beta": 0.5}})
     (('placement.beta', 0.5), ('sampling', 'full'))
     """
-    found: list[tuple[str, Scalar]] = []
-    for name, value in settings.items():
-        if isinstance(value, Mapping):
-            found += [(f"{name}.{below}", each) for below, each in flat(value)]
-        else:
-            found.append((name, value))
-    return tuple(sorted(found))
+    return tuple(sorted((".".join(path), value) for path, value in flat(settings)))
 
 
-def nested(changes: Changes) -> dict[str, Any]:
+def settings_of(changes: Changes) -> dict[str, Any]:
     """Return what :meth:`drystone.planner.settings.PlannerSettings.updated` takes.
 
-    >>> nested((("placement.beta", 0.5), ("sampling", "full")))
+    >>> settings_of((("placement.beta", 0.5), ("sampling", "full")))
     {'placement': {'beta': 0.5}, 'sampling': 'full'}
     """
-    tables: dict[str, Any] = {}
-    for name, value in changes:
-        *above, last = name.split(".")
-        table = tables
-        for part in above:
-            table = table.setdefault(part, {})
-        table[last] = value
-    return tables
+    return nested((name.split("."), value) for name, value in changes)
 
 
 def told(changes: Changes) -> str:
@@ -173,7 +161,7 @@ class RunSpec:
 
     def settings(self) -> PlannerSettings:
         """Return the settings of the planner."""
-        return method_settings(self.method).updated(nested(self.changes))
+        return method_settings(self.method).updated(settings_of(self.changes))
 
     def as_dict(self) -> dict[str, Any]:
         """Return what JSON writes."""
@@ -194,7 +182,7 @@ class RunSpec:
 
         A change to what the method has anyway is no change.
         """
-        has = () if self.method == STRIPS else flat(method_settings(self.method).as_dict())
+        has = () if self.method == STRIPS else changes_of(method_settings(self.method).as_dict())
         changes = {name: value for name, value in self.changes if (name, value) not in has}
         about = self.as_dict() | {"changes": changes, "version": version("drystone")}
         return hashlib.sha256(json.dumps(about, sort_keys=True).encode()).hexdigest()[:24]
