@@ -53,6 +53,12 @@ def test_what_rests_nowhere_else_is_lifted_by_a_quarter_of_its_size_and_more():
     assert (rest.x, rest.y, rest.angle_deg) == pytest.approx((0.0, 18.2, 0.0), abs=0.1)
 
 
+def test_what_was_put_down_askew_may_turn_back_past_the_plan():
+    slope = np.array([(-60.0, 0.0), (60.0, 0.0), (60.0, 2.0), (-60.0, 20.0)])  # 8.5 degrees
+    rest, _ = put(brick(0.0, 23.0, 6.0), slope)
+    assert rest.angle_deg == pytest.approx(-8.5, abs=0.1)
+
+
 def test_neighbours_on_both_sides_are_pushed_apart_and_push_on():
     walls = box(-58.0, 0.0), box(18.0, 0.0), box(58.5, 0.0), box(110.0, 0.0)
     rest, pushed = put(brick(0.0, 10.0), *walls)
@@ -135,6 +141,16 @@ def test_a_cobble_is_held_where_what_lies_on_it_soon_lies_on_others(once):
     assert once(groups, NONE, np.random.default_rng(0)).first_fall is None
 
 
+@BOTH
+def test_a_stone_does_not_tip_further_than_what_lies_on_it_lets_it(once):
+    """The beam bears on a peak beside the post; once that sinks it bears on the other end."""
+    post, pier, beam = box(35.0, 0.0, 30.0), box(150.0, 0.0, 30.0, 42.0), box(10.0, 42.0, 190.0)
+    peak = [(100.0, 40.0), (94.0, 40.0), (94.0, 42.0), (90.0, 42.0), (90.0, 40.0)]
+    stone = np.array([(20.0, 20.0), (100.0, 20.0), *peak, (20.0, 40.0)])
+    groups = [[(i, corners)] for i, corners in enumerate((post, pier, stone, beam))]
+    assert once(groups, NONE, np.random.default_rng(0)).first_fall is None
+
+
 def test_a_plank_does_not_rock_under_a_stone_that_cannot_rise():
     post, plank = [(1, box(40.0, 0.0, 20.0, 5.0))], [(2, box(0.0, 5.0, 100.0, 15.0))]
     before = built([post, plank, [(3, box(10.0, 20.0, 20.0, 30.0))]])
@@ -172,6 +188,19 @@ def test_what_was_pushed_into_another_is_put_down_again():
     deep, apart = (one.intersection(other).area for one, other in bodies)
     assert deep > 20.0
     assert apart < 0.5
+
+
+def test_what_cannot_get_out_under_a_stone_that_was_pushed_into_it_stays():
+    """A brick pushes a beam against the slope of a stone that a post and a face hold."""
+    left, base = box(-90.0, 0.0, 59.0, 60.0), box(-30.0, 0.0, 50.0, 37.0)
+    post, right = box(40.0, 0.0, 20.0), box(110.2, 0.0, 40.0, 60.0)
+    stone = np.array([(30.0, 20.0), (110.0, 20.0), (110.0, 40.0), (60.0, 40.0), (30.0, 34.0)])
+    beams = box(0.0, 37.0, 45.0, 23.0), box(46.0, 40.0, 50.0, 15.0)
+    blocks = left, base, post, right, stone, *beams
+    before = built([[(i, corners)] for i, corners in enumerate(blocks)])
+    laid = before.put([(9, as_planned(box(-32.5, 37.0, 34.0)))])
+    assert laid.laid[5].x > before.laid[5].x + 1.0
+    assert laid.loaded(9).laid[4] is laid.laid[4]
 
 
 def test_a_stone_far_above_tips_what_carries_all():

@@ -126,25 +126,50 @@ class SlowWall:
             del again[block]
         after, rest = left.put(again.items()), left.laid.get(block)
         if block not in again and rest is None:
-            own, at = built.corners - (built.x, built.y), (built.x, built.y, 0.0)
-            alone = settle(own, edges, at, below, 0.0, rules).status is Status.RESTS
-            ends = [(after.laid.get(i), one) for i, one in again.items()]
-            if alone and all(end is not None and is_near(end, one) for end, one in ends):
+            at = (x, y, 0.0)
+            if left.gives_way(built, after, again) or left.comes_back(block, built, at, again):
                 return self
         if rest is not None and not again.keys() <= after.laid.keys():
             for i in again.keys() - after.laid.keys():
                 way = (built.x, built.y), (rest.x, rest.y), rest.angle_deg - built.angle_deg
                 again[i] = moved_with(again[i], *way)
             after = left.put(again.items())
+        if rest is not None or block in again:
             lost = [b for i, b in again.items() if i not in after.laid]
             if any(after.rest_of(one)[1] is None for one in lost):
                 return self
         after.find_beds()
         return after
 
+    def gives_way(self, built, after, again):
+        """Say whether a block rests alone, and what lies on it stays without it."""
+        corners, rules = built.corners - (built.x, built.y), self.how(built.size).rules
+        pose = (built.x, built.y, 0.0)
+        edges, around = polygon_edges(corners), self.polygons()
+        alone = settle(corners, edges, pose, around, 0.0, rules).status is Status.RESTS
+        return alone and all(is_near(after.laid.get(i), one) for i, one in again.items())
+
+    def comes_back(self, block, built, at, again):
+        """Say whether its load acts over the edge again once a block has tipped about it."""
+        corners, rules = built.corners - at[:2], self.how(built.size).rules
+        half = rules._replace(turn=rules.turn / 2, shift=rules.shift / 2)
+        end = settle(corners, polygon_edges(corners), at, self.polygons(), 0.0, half)
+        tipped = moved_with(built, at[:2], (end.x, end.y), math.degrees(end.angle))
+        wall = SlowWall(self.mu, self.how, {**self.laid, block: tipped}, self.beds)
+        wall = wall.put(again.items())
+        if not all(is_near(wall.laid.get(i), one) for i, one in again.items()):
+            return False
+        wall.find_beds()
+        _, x, _ = load(block, wall.laid, wall.beds, wall.burden([block]))
+        on = wall.beds[block].points
+        over = any(one.x <= x if end.angle > 0.0 else one.x >= x for one in on)
+        return over or wall.stays(block, wall.beds)
+
 
 def is_near(one, other):
-    """Less than half of a fall from each other."""
+    """Less than half of a fall from each other; not so where one is gone."""
+    if one is None:
+        return False
     way = math.hypot(one.x - other.x, one.y - other.y) / one.size
     return way <= 0.125 and abs(one.angle_deg - other.angle_deg) <= 6.0
 

@@ -14,12 +14,13 @@ ALONG = np.array((1.0, 0.0))
 def put_down(outline, edges, at, around, rules, lifts, last, most, gap):
     """Return how it rests, or None, and by how much others are pushed; None without room."""
     room, others = False, [around.polygon(i) for i in range(len(around))]
-    for sticks, some in ((True, lifts), (False, lifts), (True, last)):
+    wide = rules._replace(turn=2.0 * rules.turn, shift=2.0 * rules.shift)
+    for sticks, some, by in ((True, lifts, rules), (False, lifts, rules), (True, last, wide)):
         for lift in some:
             x, y = at[0], at[1] + lift
             shift, moved, pushed = squeezed_in(outline + np.array((x, y)), others, most, gap)
             pose, heap = (x + shift, y, 0.0), no_polygons().added(moved)
-            found = settle(outline, edges, pose, heap, 0.0, rules._replace(sticks=sticks))
+            found = settle(outline, edges, pose, heap, 0.0, by._replace(sticks=sticks))
             if found.status is Status.RESTS:
                 return found, pushed
             room = room or found.status is not Status.OVERLAPS

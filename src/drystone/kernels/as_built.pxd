@@ -39,3 +39,4 @@ cdef p_double loads_of(BuiltWall wall, p_uchar marks, Py_ssize_t unfaced, list k
 cdef void find_carrying(Bed bed, bint faced, double x, Py_ssize_t *two) noexcept
 cdef int stays(BuiltWall wall, Py_ssize_t number, p_double loads, bint faced) except -1
 cdef BuiltWall rolled(BuiltWall wall, Py_ssize_t number, p_double loads)
+cdef int comes_back(BuiltWall below, Py_ssize_t number, object tipped, list again) except -1

@@ -530,6 +530,30 @@ def stays(wall, number, loads, faced):
     return moment <= near * loads[3 * number]
 
 
+def comes_back(below, number, tipped, again):
+    """Say whether a load acts over the edge again once a block has tipped about it.
+
+    What lies on the block is put down again, and moves by less than half of the way to a fall.
+    """
+    kept: list = []
+    wall: BuiltWall = copied(below, [(below.ids[number], tipped)])
+    add(wall, number, tipped)
+    wall = laid_too(wall, again)
+    if not all(is_near(wall, wall.get(block), one) for block, one in again):
+        return False
+    find_beds(wall)
+    alone: cython.p_uchar = kept_flags(kept, len(wall.ids))
+    alone[number] = 1
+    loads: cython.p_double = loads_of(wall, alone, -1, kept)
+    x: cython.double = loads[3 * number + 1]
+    left: cython.bint = tipped.angle_deg > below.built[number].angle_deg
+    bed: Bed = wall.beds[number]
+    for k in range(0, ROW * bed.count, ROW):
+        if bears(bed, k, False) and (bed.rows[k + X] <= x if left else bed.rows[k + X] >= x):
+            return True
+    return stays(wall, number, loads, False)
+
+
 def rolled(wall, number, loads):
     """Let a block go under its load, and put down again what lies on it.
 
@@ -563,9 +587,15 @@ def rolled(wall, number, loads):
         if status == RESTS:
             break
     rests_alone: cython.bint = False
+    tipped = None
     if status not in (RESTS, OVERLAPS):
         own: Way = way_of(built.corners - (built.x, built.y), edges, rules)
         rests_alone = let_go(own, wall, built.x, built.y, 0.0) == RESTS
+        half = rules._replace(turn=HALF * rules.turn, shift=HALF * rules.shift)
+        way = way_of(corners, edges, half)
+        let_go(way, wall, x, y, 0.0)
+        end_x, end_y, turn_deg = way.here.x, way.here.y, math.degrees(way.here.turn)
+        tipped = moved_with(built, (x, y), (end_x, end_y), turn_deg)
     move_doubles(wall.boxes, 0, boxes, 0, 4 * wall.size)
     if status == RESTS and way.here.x == x and way.here.y == y and way.here.turn == 0.0:
         return wall
@@ -585,6 +615,8 @@ def rolled(wall, number, loads):
     after: BuiltWall = laid_too(below, again)
     if rests_alone and all(is_near(wall, after.get(block), one) for block, one in again):
         return wall  # what lies on it stays without it, so that it bears as little as it can
+    if tipped is not None and comes_back(below, number, tipped, again):
+        return wall
     lost = [block for block, one in again if after.get(block) is None]
     if rest is not None and lost:
         # What finds no place where it was goes with the block.
@@ -594,6 +626,7 @@ def rolled(wall, number, loads):
             (i, moved_with(one, start, end, turn_deg) if i in lost else one) for i, one in again
         ]
         after = laid_too(below, again)
+    if rest is not None or status == OVERLAPS:
         for piece in again:
             if after.get(piece[0]) is None:
                 trial: BuiltWall = copied(after, [piece])

@@ -45,6 +45,8 @@ def put_down(press, x, start_y, lifts, last):
     for way.sticks, some in ((True, lifts), (False, lifts), (True, last)):
         if not way.sticks and not steps:
             continue  # it overlaps wherever it is let go
+        if some is last:
+            way.most_turn, way.most_shift = 2.0 * way.most_turn, 2.0 * way.most_shift
         steps, least = 0, 0.0
         for lift in some:
             if lift < least:

@@ -21,7 +21,7 @@ ASIDE = 0.3
 LIFTS = (0.0, 0.01, 0.02, 0.04, 0.06, 0.08, 0.1, 0.13, 0.16, 0.2)
 """So much higher, over its size, a block is let go where it overlaps others."""
 
-LAST_LIFTS = (0.25, 0.3)
+LAST_LIFTS = (*LIFTS, 0.25, 0.3)
 """The same for what rests with none of these: on what leans, it may end less high."""
 
 STEP, TOUCHING, OVERLAP = 0.01, 0.003, 0.05
