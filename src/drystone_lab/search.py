@@ -13,10 +13,10 @@ from drystone.metrics.frame import reduce_labels
 from drystone.metrics.measure import measure_labels
 from drystone.model.site import Site
 from drystone.model.stone import StoneSet
-from drystone.model.wall import Labels, Wall
+from drystone.model.wall import Labels
 from drystone.planner.deadline import Deadline
 from drystone.planner.planner import Planner
-from drystone.planner.settings import PlannerSettings, method_settings
+from drystone.planner.settings import method_settings
 from drystone.search.anytime import searching
 from drystone.search.chain import wedged
 from drystone.search.goal import FoundWall, possible_filling
@@ -72,13 +72,7 @@ def _restarts(
     best, walls = finished(start, start), 1
     while True:
         yield WayState(walls, lambda best=best: best)  # type: ignore[misc]
-        planner = Planner(
-            first.workshop.stones,
-            first.workshop.site,
-            seed=first.seed + BETWEEN_SEEDS * walls,
-            settings=first.settings,
-            workshop=first.workshop,
-        )
+        planner = yard.planner(first.seed + BETWEEN_SEEDS * walls)
         for _ in planner.steps():
             pass
         found = finished(FoundWall.of(planner), best)
@@ -112,12 +106,6 @@ WAYS: Mapping[str, Way] = {
 }
 
 
-def tries(budget: int) -> PlannerSettings:
-    """Return the settings of `best` with so many walls tried; 1 is a single pass."""
-    best = method_settings("best")
-    return replace(best, search=replace(best.search, budget=budget))
-
-
 def looked_at_times(
     way: Way,
     stones: StoneSet,
@@ -137,9 +125,8 @@ def looked_at_times(
     end = started + times[-1]
     # A budget that is never used up, another one for every seed, so that nothing is left over from
     # a search of another seed.
-    settings = tries(10**9 + seed).updated(settings_of(changes))
-    width, height = target.size(stones)
-    site = Site.from_source(width, height, target.scale)
+    settings = target.run(seed, ("search.budget", 10**9 + seed), *changes, method="best").settings()
+    site = Site.from_source(*target.size(stones), target.scale)
     first = Planner(stones, site, seed=seed, settings=settings)
     for _ in first.steps():
         pass
@@ -187,7 +174,7 @@ def result_of(looked: WayResult) -> SearchResult:
     found, figures = looked.found, looked.found.figures
     if figures is None:
         raise ValueError("no stone stands in this wall")
-    other = second_of(found.build.wall)
+    other = second.second_arrangement(second.finer_picture(found.build.wall))
     values = (
         figures.stones, figures.F_SF, figures.F_AV, figures.F_AH, figures.F_LR, other.F_AV,
         other.F_AH, figures.T_LEVEL, figures.E_FLUSH, found.merit, looked.possible, looked.walls,
@@ -201,13 +188,6 @@ def in_words(result: SearchResult, stones: int) -> str:
     values = {name: "-" if v is None else f"{v:.4g}" for name, v in result.items()}
     named = ", ".join(f"{name} {values[name]}" for name in FIGURES[1:])
     return f"{values['placed']} of {stones} stones, {named}, {result['walls']} walls"
-
-
-def second_of(wall: Wall) -> second.SecondArrangement:
-    """Measure a planned wall by the second definition, on outlines where it has them."""
-    if wall.outlines is None:
-        return second.second_arrangement(second.finer_labels(wall.labels))
-    return second.second_arrangement(second.outlined_labels(wall.outlines.blocks, wall.site))
 
 
 def read_results(path: Path) -> dict[SearchRun, SearchResult]:

@@ -6,7 +6,6 @@ start, that they end where they like and cannot pass by the wall; that all of th
 the shortest alone.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,9 +15,9 @@ from drystone.kernels.paths import row_lengths, step_counts
 from drystone.kernels.raster import Mask
 from drystone.metrics import paths
 from drystone.metrics.frame import frame_wall
-from drystone.model.outlines import Outlined, Outlines
+from drystone.model.outlines import Outlines
 from drystone.model.site import Site
-from drystone.model.wall import Labels
+from drystone.model.wall import Labels, Wall
 
 FINER = 3
 """Resolution at which joints are looked at, over the working resolution."""
@@ -62,11 +61,13 @@ def finer_labels(labels: Labels) -> Labels:
     return labels.repeat(FINER, axis=0).repeat(FINER, axis=1)
 
 
-def outlined_labels(blocks: Sequence[Outlined], site: Site) -> Labels:
-    """Draw outlines at the resolution of the second definition."""
-    scale = FINER * site.scale
-    finer = Site(FINER * site.width_px, FINER * site.height_px, scale)
-    return Outlines.empty(finer).added(blocks, scale).shares.labels
+def finer_picture(wall: Wall) -> Labels:
+    """Draw a planned wall at the resolution of the second definition, by its outlines if any."""
+    if wall.outlines is None:
+        return finer_labels(wall.labels)
+    scale = FINER * wall.site.scale
+    finer = Site(FINER * wall.site.width_px, FINER * wall.site.height_px, scale)
+    return Outlines.empty(finer).added(wall.outlines.blocks, scale).shares.labels
 
 
 def _mean_excess(joint: Mask) -> float | None:

@@ -18,7 +18,7 @@ from drystone.search.plan_wall import plan_wall
 from drystone_lab import search
 from drystone_lab.runs.spec import generated
 from drystone_lab.search import SearchRun
-from drystone_lab.second_arrangement import finer_labels, second_arrangement
+from drystone_lab.second_arrangement import finer_labels, finer_picture, second_arrangement
 from drystone_lab.table import BenchSettings
 from drystone_lab.walls import BRICKS, SEARCHED, UNSEEN, Target, chosen
 from tests.metrics.walls import bricks
@@ -63,7 +63,8 @@ def test_what_is_begun_in_time_counts(name, seconds, walls):
 
 def test_the_search_is_that_of_a_plan_with_the_same_budget_and_another_has_no_courses():
     looked = looked_for("search", 50, ticking())
-    plan = plan_wall(STONES, 72, 24, seed=1, settings=search.tries(looked.walls), scale=1.0)
+    settings = WALL.run(1, ("search.budget", looked.walls), method="best").settings()
+    plan = plan_wall(STONES, 72, 24, seed=1, settings=settings, scale=1.0)
     np.testing.assert_array_equal(looked.found.build.wall.labels, plan.wall.labels)
     assert looked.found.figures.F_LR == pytest.approx(plan.metrics.F_LR, abs=1e-12)
     assert looked_for("without courses", 1, clock_of(0, 100)).found.courses is None
@@ -74,7 +75,7 @@ def worth(monkeypatch):
     """Walls that are worth what is said, in place of built ones, and the seeds of all but one."""
     seeds = []
 
-    def planner(*_, seed, **__):
+    def planner(_, seed):
         seeds.append(seed)
         return SimpleNamespace(steps=lambda: ())
 
@@ -82,7 +83,7 @@ def worth(monkeypatch):
         values = iter(merits)
         found = SimpleNamespace(of=lambda _: SimpleNamespace(merit=next(values)))
         monkeypatch.setattr(search, "FoundWall", found)
-        monkeypatch.setattr(search, "Planner", planner)
+        monkeypatch.setattr(search.Yard, "planner", planner)
         settings = SimpleNamespace(search=SimpleNamespace(wedge_below=0.25))
         workshop = SimpleNamespace(stones=None, site=None)
         return SimpleNamespace(seed=3, seeds=seeds, workshop=workshop, settings=settings)
@@ -328,11 +329,9 @@ def test_a_result_holds_the_figures_by_both_definitions():
         search.result_of(looked)
     # A wall of outlines is looked at on its outlines; here all are on whole pixels.
     wall = exact_example().wall
-    found = search.second_of(wall)
-    assert found == second_arrangement(finer_labels(wall.labels))
-    assert found == search.second_of(
-        Wall(wall.site, np.zeros((1, 1), np.uint32), (), wall.outlines)
-    )
+    found = second_arrangement(finer_labels(wall.labels))
+    without_pixels = Wall(wall.site, np.zeros((1, 1), np.uint32), (), wall.outlines)
+    assert second_arrangement(finer_picture(without_pixels)) == found
 
 
 @pytest.mark.parametrize("target", UNSEEN, ids=lambda target: target.name)

@@ -1,11 +1,12 @@
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from hypothesis import example, given
 
 from drystone.model.site import Site
-from drystone_lab.second_arrangement import finer_labels, outlined_labels, second_arrangement
+from drystone_lab.second_arrangement import finer_labels, finer_picture, second_arrangement
 from tests.metrics.walls import bricks, walls
 from tests.naive import metrics as naive
 from tests.strategies import repeatable
@@ -53,7 +54,8 @@ def test_a_path_cannot_pass_by_the_wall_nor_through_a_slit_at_its_end():
 
 def test_outlines_are_drawn_three_times_as_fine():
     corners = np.array([[4.0, 2.0], [20.0, 2.0], [20.0, 10.0], [4.0, 10.0]])
-    labels = outlined_labels([(7, corners), (9, corners + np.array([16, -2]))], Site(20, 8, 0.5))
+    outlines = SimpleNamespace(blocks=((7, corners), (9, corners + np.array([16, -2]))))
+    labels = finer_picture(SimpleNamespace(site=Site(20, 8, 0.5), outlines=outlines))
     assert labels.shape == (24, 60)
     expected = np.zeros((24, 60), np.uint32)
     expected[24 - 15 : 24 - 3, 6:30] = 7

@@ -11,13 +11,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
+from scipy.stats import sem
 from scipy.stats import t as student
 
 from drystone.errors import DrystoneError, ExitCode
-from drystone.planner.planner import Planner
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.workshop import Workshop
-from drystone.search.goal import figures_of, merit_of, possible_filling
+from drystone.search.goal import FoundWall
+from drystone.search.yard import Yard
 from drystone.selection.policies.registry import rule_of
 from drystone_lab.paired import COVERED
 from drystone_lab.rl.episode import ARRIVING, KINDS, DrawSettings, draw_wall
@@ -41,16 +42,15 @@ def difference(values: Sequence[float]) -> tuple[float, float]:
     >>> difference([1.0, 1.0, 1.0])
     (1.0, 0.0)
     """
-    mean, count = float(np.mean(values)), len(values)
-    if count < 2:
+    mean = float(np.mean(values))
+    if len(values) < 2:
         return mean, float("inf")
-    quantile = float(student.ppf(0.5 + COVERED / 2, count - 1))
-    return mean, quantile * float(np.std(values, ddof=1)) / count**0.5
+    return mean, float(sem(values) * student.ppf(0.5 + COVERED / 2, len(values) - 1))
 
 
 def held_out_wall(kind: str, number: int, draw: DrawSettings) -> Workshop:
     """Return a wall that no training with these seeds has had."""
-    rng = np.random.default_rng([HELD_OUT, list(KINDS).index(kind), number])
+    rng = np.random.default_rng([HELD_OUT, KINDS.index(kind), number])
     return Workshop.prepare(*draw_wall(replace(draw, kinds=(kind,)), rng), ARRIVING)
 
 
@@ -61,17 +61,15 @@ def figures_by(
     found: dict[str, list[float]] = {name: [] for name in FIGURES}
     rule = replace(settings, selection_rule=rule_of(policy))
     for number, workshop in enumerate(workshops):
-        planner = Planner(
-            workshop.stones, workshop.site, seed=number, settings=rule, workshop=workshop
-        )
+        planner = Yard(workshop, rule).planner(number)
         for _ in planner.steps():
             pass
-        figures = figures_of(planner.build)
-        if figures is None:
+        wall = FoundWall.of(planner)
+        if wall.figures is None:
             raise ValueError(f"{policy} built nothing with wall {number}")
-        found["merit"].append(merit_of(figures, possible_filling(workshop), settings.goal))
+        found["merit"].append(wall.merit)
         for name in FIGURES[1:]:
-            found[name].append(getattr(figures, name))
+            found[name].append(getattr(wall.figures, name))
     return found
 
 
