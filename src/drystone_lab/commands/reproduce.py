@@ -27,11 +27,7 @@ def run(arguments: argparse.Namespace, items: "Mapping[str, PaperItem] | None" =
     names = _names(arguments)
     folder = Path(arguments.output)
     make_folder(folder)
-    from drystone_lab.reproduce.driver import (  # noqa: PLC0415 - see above
-        PAGE,
-        Options,
-        reproduce,
-    )
+    from drystone_lab.reproduce.driver import PAGE, reproduce  # noqa: PLC0415 - see above
     from drystone_lab.runs.workers import work_of  # noqa: PLC0415
 
     done = []
@@ -40,11 +36,11 @@ def run(arguments: argparse.Namespace, items: "Mapping[str, PaperItem] | None" =
         if data is not None and not data.is_dir():
             print(f"drystone: there is no folder {data} of published data", file=sys.stderr)
             data = None
-        options = Options(
-            data=data, quick=arguments.quick, seed=arguments.seed, again=arguments.again, work=work,
-            say=(lambda _: None) if arguments.quiet else say,
-        )  # fmt: skip
-        for made in reproduce(names, folder, options, items):
+        tell = (lambda _: None) if arguments.quiet else say
+        for made in reproduce(
+            names, folder, items, data=data, quick=arguments.quick, seed=arguments.seed,
+            again=arguments.again, work=work, say=tell,
+        ):  # fmt: skip
             done.append(made)
             if made.error is not None:
                 print(f"drystone: {made.name}: {made.error}", file=sys.stderr)

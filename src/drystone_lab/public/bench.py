@@ -1,6 +1,6 @@
 """Runs of the public benchmark: every method on every wall with every seed."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Sequence
 from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
@@ -17,7 +17,7 @@ from drystone_lab.packing import load_packer
 from drystone_lab.public.store import CSV, NOT_SHAKEN, KeptRun, keep, kept_runs
 from drystone_lab.public.suites import STRIP_SECONDS, method_named, walls_of
 from drystone_lab.public.tables import BenchResults, comparison, pair_tables
-from drystone_lab.runs.outcome import Runner, RunOutcome, RunStore, absent_data
+from drystone_lab.runs.outcome import Runner, RunOutcome, absent_data
 from drystone_lab.runs.spec import STRIPS, RunSpec
 from drystone_lab.runs.workers import work_of
 from drystone_lab.table import BENCH, BenchSettings, Table
@@ -36,9 +36,6 @@ def pga_of(spec: RunSpec, outcome: RunOutcome, data: Path | None) -> float | Non
     # Wedges may fall out: the score is about stones.
     stones = frozenset(placement.stone_id for placement in wall.placements)
     return shake_once(EngineScene(outlines, spec.settings().mu), ROUNDED, watched=stones)
-
-
-BenchRun = tuple[RunSpec, RunOutcome, KeptRun]
 
 
 def run_public(suite: str, settings: BenchSettings, made_at: str) -> tuple[Table, ...]:
@@ -91,35 +88,26 @@ def _done(
         TemporaryDirectory(prefix="drystone-bench-") if store is None else nullcontext(store) as at,
         work_of(settings.jobs, settings.dask) as work,
     ):
-        plans = RunStore(Path(at) / "runs")
+        plans = Path(at) / "runs"
         runner = Runner(plans, settings.data, work, settings.say, again=settings.again)
         outcomes = runner.run([spec for *_, spec in tasks])
     runs = [
-        (spec, outcome, KeptRun.of(wall, method, spec.seed, outcome, settings.changes, made_at))
+        KeptRun.of(wall, method, spec.seed, outcome, settings.changes, made_at)
         for (wall, method, spec), outcome in zip(tasks, outcomes, strict=True)
     ]
     if store is not None:
-        keep(store, [run for *_, run in runs if settings.again or run.run_key not in kept])
-    if settings.shake:
-        runs = list(_shaken(runs, {} if settings.again else kept, settings))
-    if store is not None:
-        settings.say(f"wrote {store / CSV}")
-    return BenchResults(tuple(run for *_, run in runs))
-
-
-def _shaken(
-    runs: Sequence[BenchRun], kept: Mapping[str, KeptRun], settings: BenchSettings
-) -> Iterator[BenchRun]:
-    """Give the runs with their amplitudes; each is kept at once, as it takes long."""
-    for number, (spec, outcome, run) in enumerate(runs, 1):
-        before = kept.get(run.run_key)
-        shakes = spec.method != STRIPS and (before is None or before.shaken == NOT_SHAKEN)
+        keep(store, [run for run in runs if settings.again or run.run_key not in kept])
+    for k, (run, outcome) in enumerate(zip(runs, outcomes, strict=True) if settings.shake else ()):
+        before = None if settings.again else kept.get(run.run_key)
+        shakes = run.method != STRIPS and (before is None or before.shaken == NOT_SHAKEN)
         pga_g = None if before is None else before.pga_g
         if shakes:
-            pga_g = pga_of(spec, outcome, settings.data)
-        shaken = replace(run, pga_g=pga_g, shaken="falls" if pga_g is None else "yes")
+            pga_g = pga_of(tasks[k][-1], outcome, settings.data)
+        runs[k] = replace(run, pga_g=pga_g, shaken="falls" if pga_g is None else "yes")
         if shakes:
-            if settings.store is not None:
-                keep(settings.store, [shaken])
-            settings.say(f"{number} of {len(runs)} walls shaken")
-        yield spec, outcome, shaken
+            if store is not None:  # at once, as it takes long
+                keep(store, [runs[k]])
+            settings.say(f"{k + 1} of {len(runs)} walls shaken")
+    if store is not None:
+        settings.say(f"wrote {store / CSV}")
+    return BenchResults(tuple(runs))

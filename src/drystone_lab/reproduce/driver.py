@@ -24,7 +24,7 @@ from drystone.kernels.backend import describe
 from drystone.whole_files import write_whole
 from drystone_lab.reproduce.item import Context, ItemFigure, Output, PaperItem
 from drystone_lab.reproduce.items import ITEMS, item_named
-from drystone_lab.runs.outcome import Runner, RunStore, RunWorker, absent_data, one_by_one
+from drystone_lab.runs.outcome import Runner, RunWorker, absent_data, one_by_one
 from drystone_lab.runs.spec import published
 from drystone_lab.table import Table, written
 
@@ -312,21 +312,6 @@ def _read(path: Path, schema: str) -> dict[str, Any] | None:
 EVERY_S = 2.0  # walls are told of no oftener than that
 
 
-@dataclass(frozen=True, kw_only=True)
-class Options:
-    """How items are made."""
-
-    data: Path | None = None  # Folder of the published data
-    quick: bool = False  # quick, seed: See :class:`drystone_lab.reproduce.item.Context`
-    seed: int = 1
-    # Make items again that are finished; their walls are taken from the folder all the same
-    again: bool = False
-    work: RunWorker = one_by_one  # Who plans the walls
-    say: Callable[[str], None] = lambda _: None  # Told of progress, a line each
-    # Gives the time of day that is written into the report
-    now: Callable[[], datetime] = lambda: datetime.now(UTC)
-
-
 @dataclass(frozen=True, eq=False)
 class MadeItem:
     """What became of an item."""
@@ -341,17 +326,28 @@ class MadeItem:
 def reproduce(
     names: Sequence[str],
     folder: Path,
-    options: Options,
     items: Mapping[str, PaperItem] | None = None,
+    *,
+    data: Path | None = None,
+    quick: bool = False,
+    seed: int = 1,
+    again: bool = False,
+    work: RunWorker = one_by_one,
+    say: Callable[[str], None] = lambda _: None,
+    now: Callable[[], datetime] = lambda: datetime.now(UTC),
 ) -> Iterator[MadeItem]:
-    """Make items and yield what became of each; the report is written anew after every one."""
+    """Make items and yield what became of each; the report is written anew after every one.
+
+    With `again` finished items are made again; their walls are taken from the folder all the same.
+    `say` is told of progress, and `now` gives the time of day that is written into the report.
+    """
     items = {name: item_named(name) for name in ITEMS} if items is None else items
     report = ReportFolder(folder)
-    progress = ItemProgress(options.say, len(names))
-    runner = Runner(RunStore(folder / "runs"), options.data, options.work, progress.walls)
+    progress = ItemProgress(say, len(names))
+    context = Context(Runner(folder / "runs", data, work, progress.walls), quick, seed)
     for name in names:
         progress.begin(name)
-        made = _made(name, items[name], report, options, runner)
+        made = _made(name, items[name], report, context, now, again=again)
         report.miss(name, items[name], made.error)
         records = [record for each in items if (record := report.record(each)) is not None]
         write_page(folder / PAGE, records, report.misses, list(items))
@@ -360,36 +356,37 @@ def reproduce(
 
 
 def _made(
-    name: str, item: PaperItem, report: ReportFolder, options: Options, runner: Runner
-) -> MadeItem:
+    name: str, item: PaperItem, report: ReportFolder, context: Context,
+    now: Callable[[], datetime], *, again: bool,
+) -> MadeItem:  # fmt: skip
     """Return what becomes of an item: it is kept, made, or there is an error."""
     # What the contents depend on, beside the name.  Published are the files that are there: some
     # items leave out rows whose stones are not.
-    data, files = options.data, [file.name for each in SETS.values() for file in each.files]
+    data, files = context.data, [file.name for each in SETS.values() for file in each.files]
     there = [each for each in files if data is not None and (data / each).is_file()]
     request = {
-        "version": version("drystone"), "quick": options.quick, "seed": options.seed,
+        "version": version("drystone"), "quick": context.quick, "seed": context.seed,
         "published": there,
     }  # fmt: skip
-    kept = None if options.again else report.record(name)
+    kept = None if again else report.record(name)
     if kept is not None and is_met(request, kept["request"]):
         return MadeItem(name, "kept", kept, None)
-    absent = [each for each in item.needs if not published(each).is_there(data)]
+    absent = [each for each in item.words.get("needs", ()) if not published(each).is_there(data)]
     begun = time.perf_counter()
     try:
         if absent:
             raise absent_data(absent, known=data is not None)
-        output = item.make(Context(runner, options.quick, options.seed))
+        output = item.make(context)
     except DrystoneError as error:
         return MadeItem(name, "missing data" if absent else "failed", None, error)
     seconds = time.perf_counter() - begun
     # Whenever its walls were planned
-    outcomes = [runner.store.get(key) for key in {spec.key for spec in output.runs}]
+    outcomes = [context.runner.kept(key) for key in {spec.key for spec in output.runs}]
     walls = [outcome.times["wall"] for outcome in outcomes if outcome is not None]
     about = {
         "request": request,
         "made": {
-            "date": options.now().strftime("%Y-%m-%d %H:%M UTC"),
+            "date": now().strftime("%Y-%m-%d %H:%M UTC"),
             "machine": f"{platform.system()} {platform.machine()}, {os.cpu_count()} cores",
             "python": platform.python_version(),
             "kernels": describe(),

@@ -96,36 +96,6 @@ def execute(spec: RunSpec, data: Path | None, stones: StoneSet | None = None) ->
     return RunOutcome(spec.key, figures, plan_to_json(plan), times)
 
 
-class RunStore:
-    """Outcomes as files, one a run."""
-
-    def __init__(self, folder: Path) -> None:
-        self.folder = folder
-
-    def get(self, key: str) -> RunOutcome | None:
-        """Return the outcome of a run; None when it is not there."""
-        path = self.folder / f"{key}.json"
-        try:
-            data = json.loads(path.read_text(encoding="utf-8"))
-            figures, plan, times = (dict(data[name]) for name in ("figures", "plan", "times"))
-            if not ("wall" in times and "steps" in plan and set(FIGURES) <= figures.keys()):
-                raise KeyError(key)
-        except FileNotFoundError:
-            return None
-        except (ValueError, TypeError, KeyError) as error:
-            what = "the outcome of a run that is kept here is damaged."
-            cure = "Delete the file: its run is then done again."
-            raise InputError("E401", what, where=str(path), cure=cure) from error
-        return RunOutcome(key, figures, plan, times)
-
-    def put(self, outcome: RunOutcome) -> None:
-        """Keep an outcome; the file is whole or not there."""
-        self.folder.mkdir(parents=True, exist_ok=True)
-        data = {"figures": outcome.figures, "plan": outcome.plan, "times": outcome.times}
-        text = json.dumps(data, ensure_ascii=False, allow_nan=False)
-        write_whole(self.folder / f"{outcome.key}.json", text.encode())
-
-
 def died(spec: RunSpec | str, who: str) -> DrystoneError:
     """Return E402: who did a run died at it."""
     what = f"the {who} that did this run died, for want of memory for example."
@@ -166,7 +136,7 @@ def one_by_one(specs: Sequence[RunSpec], data: Path | None) -> Iterator[RunOutco
 class Runner:
     """Does runs and keeps their outcomes."""
 
-    store: RunStore
+    folder: Path  # Of the outcomes, a file a run
     data: Path | None = None  # Folder of the published data
     # Who does what is not there yet; never changes an outcome but for its times
     work: RunWorker = one_by_one
@@ -175,13 +145,36 @@ class Runner:
 
     def run(self, specs: Sequence[RunSpec]) -> tuple[RunOutcome, ...]:
         """Return the outcomes of runs, in their order; what ended is kept at once."""
-        found = {spec.key: None if self.again else self.store.get(spec.key) for spec in specs}
+        found = {spec.key: None if self.again else self.kept(spec.key) for spec in specs}
         missing = {spec.key: spec for spec in specs if found[spec.key] is None}
         for count, outcome in enumerate(self.work(tuple(missing.values()), self.data), 1):
-            self.store.put(outcome)
+            self.keep(outcome)
             found[outcome.key] = outcome
             self.say(f"{count} of {len(missing)} walls, {outcome.times['wall']:.1f} s")
         done = tuple(one for spec in specs if (one := found[spec.key]) is not None)
         if len(done) < len(specs):
             raise RuntimeError("runs were lost")
         return done
+
+    def kept(self, key: str) -> RunOutcome | None:
+        """Return the outcome of a run; None when it is not there."""
+        path = self.folder / f"{key}.json"
+        try:
+            data = json.loads(path.read_text(encoding="utf-8"))
+            figures, plan, times = (dict(data[name]) for name in ("figures", "plan", "times"))
+            if not ("wall" in times and "steps" in plan and set(FIGURES) <= figures.keys()):
+                raise KeyError(key)
+        except FileNotFoundError:
+            return None
+        except (ValueError, TypeError, KeyError) as error:
+            what = "the outcome of a run that is kept here is damaged."
+            cure = "Delete the file: its run is then done again."
+            raise InputError("E401", what, where=str(path), cure=cure) from error
+        return RunOutcome(key, figures, plan, times)
+
+    def keep(self, outcome: RunOutcome) -> None:
+        """Keep an outcome; the file is whole or not there."""
+        self.folder.mkdir(parents=True, exist_ok=True)
+        data = {"figures": outcome.figures, "plan": outcome.plan, "times": outcome.times}
+        text = json.dumps(data, ensure_ascii=False, allow_nan=False)
+        write_whole(self.folder / f"{outcome.key}.json", text.encode())

@@ -5,7 +5,7 @@ from dataclasses import replace
 from drystone_lab.reproduce.construction import construction
 from drystone_lab.reproduce.item import Context
 from drystone_lab.reproduce.items import item_named
-from drystone_lab.runs.outcome import FIGURES, Runner, RunOutcome, RunStore
+from drystone_lab.runs.outcome import FIGURES, Runner, RunOutcome
 from drystone_lab.runs.spec import generated
 from drystone_lab.walls import Target
 
@@ -19,7 +19,7 @@ SHARP = Target("sharp", generated("polygon", 3, count=14, noise=0.3), 700, 300, 
 
 def context(folder, data=None):
     """A context that keeps its runs in a folder."""
-    return Context(Runner(RunStore(folder), data))
+    return Context(Runner(folder, data))
 
 
 def built(folder, wall):

@@ -1,24 +1,22 @@
 """Items are made, kept and reported on pages; walls are not planned again."""
 
 import json
-from dataclasses import replace
 from datetime import UTC, datetime
 
 import pytest
 
 from drystone.errors import InputError, UsageError
 from drystone_lab.reproduce import driver
-from drystone_lab.reproduce.driver import Options, reproduce
+from drystone_lab.reproduce.driver import reproduce
 from drystone_lab.runs.outcome import one_by_one
 from drystone_lab.table import written
 from tests.drawing.report.test_report import Page
 from tests.lab.reproduce import fakes
 
-OPTIONS = Options(now=lambda: datetime(2026, 1, 2, 3, 4, tzinfo=UTC))
-
 
 def make(folder, *names, items=fakes.ITEMS, **options):
-    return list(reproduce(names, folder, replace(OPTIONS, **options), items))
+    now = datetime(2026, 1, 2, 3, 4, tzinfo=UTC)
+    return list(reproduce(names, folder, items, now=lambda: now, **options))
 
 
 def names_in(folder):

@@ -9,6 +9,7 @@ import numpy as np
 
 from drystone.generate import BrickSettings, brick_stones, lay_out
 from drystone.io.wall_image import write_labels
+from drystone_lab.runs.outcome import Runner
 from drystone_lab.runs.spec import RunSpec, generated
 
 SOURCE = generated("brick", 1, count=6, height_px=10, aspect=2)
@@ -54,6 +55,6 @@ def picture(path, count=6):
     return path
 
 
-def kept(store, spec):
+def kept(folder, spec):
     """Return True when a run has an outcome that is kept."""
-    return store.get(spec.key) is not None
+    return Runner(folder).kept(spec.key) is not None

@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import pytest
 
 from drystone.errors import DrystoneError, UsageError
-from drystone_lab.runs.outcome import Runner, RunStore, one_by_one
+from drystone_lab.runs.outcome import Runner, one_by_one
 from drystone_lab.runs.spec import RunSpec, published
 from drystone_lab.runs.workers import check_versions, cluster_at_work, execute_there
 from tests.lab.runs.bricks import NOT_SIX, SOURCE, deadly, kept, picture, run
@@ -53,7 +53,7 @@ def test_outcomes_are_the_same_bytes_whoever_works(work, tmp_path):
 
     def kept_by(name, work):
         """Keep outcomes, and read their bytes up to the times, which are last."""
-        Runner(RunStore(tmp_path / name), data=tmp_path / "data", work=work).run(specs)
+        Runner(tmp_path / name, data=tmp_path / "data", work=work).run(specs)
         files = {path.name: path.read_bytes() for path in (tmp_path / name).iterdir()}
         return {file: read.partition(b', "times": {')[:2] for file, read in files.items()}
 
@@ -66,7 +66,7 @@ def test_outcomes_are_the_same_bytes_whoever_works(work, tmp_path):
 def test_a_killed_worker_loses_nothing(work, tmp_path):
     once = tmp_path / "died"
     specs = [run(1), run(2), deadly(3, once), run(4), run(5), run(6)]
-    outcomes = Runner(RunStore(tmp_path / "store"), work=work).run(specs)
+    outcomes = Runner(tmp_path / "store", work=work).run(specs)
     assert once.exists()
     assert outcomes[2].plan == next(one_by_one([run(3)], None)).plan
     assert [outcome.key for outcome in outcomes] == [spec.key for spec in specs]
@@ -75,18 +75,17 @@ def test_a_killed_worker_loses_nothing(work, tmp_path):
 def test_a_run_that_kills_workers_is_given_up(work, cluster, tmp_path, monkeypatch):
     monkeypatch.setattr(cluster.scheduler, "allowed_failures", 0)
     with pytest.raises(DrystoneError, match=f"^E402 {deadly(1)}: "):
-        Runner(RunStore(tmp_path), work=work).run([deadly(1)])
+        Runner(tmp_path, work=work).run([deadly(1)])
 
 
 def test_a_run_that_fails_is_told(thread, tmp_path):
-    store = RunStore(tmp_path)
     with cluster_at_work(thread.scheduler_address) as work:
         with pytest.raises(DrystoneError, match="E130"):
-            Runner(store, work=work).run([run(1), run(2, NOT_SIX)])
+            Runner(tmp_path, work=work).run([run(1), run(2, NOT_SIX)])
         assert list(work([], None)) == []
-        assert Runner(store, work=work).run([run(3)])
-    assert kept(store, run(1))
-    assert not kept(store, run(2, NOT_SIX))
+        assert Runner(tmp_path, work=work).run([run(3)])
+    assert kept(tmp_path, run(1))
+    assert not kept(tmp_path, run(2, NOT_SIX))
 
 
 def test_what_ended_is_given_before_an_interrupt(thread):
@@ -106,13 +105,13 @@ def test_what_ended_is_given_before_an_interrupt(thread):
 
 
 def test_a_cluster_that_goes_away(thread, tmp_path):
-    specs, store = [run(seed) for seed in range(100)], RunStore(tmp_path)
+    specs = [run(seed) for seed in range(100)]
     with (
         cluster_at_work(thread.scheduler_address, patience_s=2.0) as work,
         pytest.raises(DrystoneError, match=r"E404 .*lost"),
     ):
-        Runner(store, work=work, say=lambda _: thread.close()).run(specs)
-    assert 1 <= sum(kept(store, spec) for spec in specs) < len(specs)
+        Runner(tmp_path, work=work, say=lambda _: thread.close()).run(specs)
+    assert 1 <= sum(kept(tmp_path, spec) for spec in specs) < len(specs)
 
 
 class Newer(RunSpec):

@@ -12,7 +12,7 @@ from drystone.planner.planner import Planner
 from drystone.planner.settings import method_settings
 from drystone.search.plan_wall import plan_wall
 from drystone_lab.runs import spec as spec_module
-from drystone_lab.runs.outcome import FIGURES, Runner, RunStore, execute, one_by_one
+from drystone_lab.runs.outcome import FIGURES, Runner, execute, one_by_one
 from drystone_lab.runs.spec import RunSpec, StoneSource, published
 from tests.lab.runs.bricks import SOURCE, kept, picture, run
 
@@ -136,7 +136,7 @@ def booked(done, stop=None):
 
 def test_outcomes_are_in_the_order_of_the_runs_and_equal_ones_are_done_once(tmp_path):
     done, said, specs = [], [], [run(3), run(1), run(3), run(2)]
-    runner = Runner(RunStore(tmp_path), work=booked(done), say=said.append)
+    runner = Runner(tmp_path, work=booked(done), say=said.append)
     first, again = (runner.run(specs) for _ in range(2))
     assert [outcome.key for outcome in first] == [spec.key for spec in specs]
     assert first[0] is first[2]
@@ -146,15 +146,15 @@ def test_outcomes_are_in_the_order_of_the_runs_and_equal_ones_are_done_once(tmp_
 
 
 def test_what_ended_before_an_interrupt_is_kept(tmp_path):
-    specs, store, later = [run(1), run(2), run(3)], RunStore(tmp_path), []
+    specs, later = [run(1), run(2), run(3)], []
     with pytest.raises(KeyboardInterrupt):
-        Runner(store, work=booked([], stop=2)).run(specs)
-    assert [kept(store, spec) for spec in specs] == [False, True, True]
-    assert len(Runner(store, work=booked(later)).run(specs)) == 3
+        Runner(tmp_path, work=booked([], stop=2)).run(specs)
+    assert [kept(tmp_path, spec) for spec in specs] == [False, True, True]
+    assert len(Runner(tmp_path, work=booked(later)).run(specs)) == 3
     assert later == [1]
     # Runs that nobody did are missed.
     with pytest.raises(RuntimeError, match="lost"):
-        Runner(store, work=lambda _specs, _data: iter(())).run([run(4)])
+        Runner(tmp_path, work=lambda _specs, _data: iter(())).run([run(4)])
 
 
 @pytest.fixture(scope="module")
@@ -163,11 +163,11 @@ def outcome():
 
 
 def test_what_was_kept_is_found(tmp_path, outcome):
-    store = RunStore(tmp_path / "new" / "folder")
-    assert store.get(outcome.key) is None
-    store.put(outcome)
-    assert vars(RunStore(store.folder).get(outcome.key)) == vars(outcome)
-    assert store.get(run(2).key) is None
+    runner = Runner(tmp_path / "new" / "folder")
+    assert runner.kept(outcome.key) is None
+    runner.keep(outcome)
+    assert vars(Runner(runner.folder).kept(outcome.key)) == vars(outcome)
+    assert runner.kept(run(2).key) is None
 
 
 def without(part, name):
@@ -194,9 +194,9 @@ def without(part, name):
     ],
 )
 def test_a_damaged_file_is_named_with_the_cure(tmp_path, outcome, damage):
-    store = RunStore(tmp_path)
-    store.put(outcome)
+    runner = Runner(tmp_path)
+    runner.keep(outcome)
     (path,) = tmp_path.iterdir()
     path.write_text(damage(path.read_text("utf-8")), "utf-8", errors="surrogateescape")
     with pytest.raises(DrystoneError, match=f"^E401 {path}: .*Delete the file"):
-        store.get(outcome.key)
+        runner.kept(outcome.key)

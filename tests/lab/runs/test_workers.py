@@ -8,7 +8,7 @@ import pytest
 
 from drystone.errors import DrystoneError, UsageError
 from drystone_lab.runs import workers
-from drystone_lab.runs.outcome import Runner, RunStore, one_by_one
+from drystone_lab.runs.outcome import Runner, one_by_one
 from drystone_lab.runs.workers import ONE_THREAD, Crew, work_of
 from tests.lab.runs.bricks import NOT_SIX, deadly, endless, kept, run
 
@@ -45,27 +45,25 @@ def interrupt_soon(_):
 
 @pytest.mark.usefixtures("interruptible")
 def test_deaths_and_interrupts_lose_nothing_that_ended(tmp_path):
-    store = RunStore(tmp_path)
     with work_of(2, None) as work:
-        runner = Runner(store, work=work)
+        runner = Runner(tmp_path, work=work)
         with pytest.raises(DrystoneError, match=f"^E402 {deadly(2)}: "):
             runner.run([run(1), deadly(2)])
-        assert [kept(store, spec) for spec in (run(1), deadly(2))] == [True, False]
+        assert [kept(tmp_path, spec) for spec in (run(1), deadly(2))] == [True, False]
         # Another process is in the place of the dead one.
         found = [one.plan for one in runner.run([run(1), run(3), run(4), run(5)])]
         assert found[:2] == [one.plan for one in one_by_one([run(1), run(3)], None)]
         with pytest.raises(KeyboardInterrupt):
-            Runner(store, work=work, say=interrupt_soon).run([run(6), endless()])
-        assert kept(store, run(6))
+            Runner(tmp_path, work=work, say=interrupt_soon).run([run(6), endless()])
+        assert kept(tmp_path, run(6))
 
 
 def test_a_run_that_fails_does_not_stop_those_that_have_begun(tmp_path, monkeypatch):
     monkeypatch.setattr(workers, "_process", AtOnce)
     specs = [run(1), run(2, NOT_SIX), run(3), run(4), run(5)]
-    store = RunStore(tmp_path)
     with work_of(3, None) as work, pytest.raises(DrystoneError, match="E130"):
-        Runner(store, work=work).run(specs)
-    assert [kept(store, run(seed)) for seed in (1, 3, 5)] == [True, True, False]
+        Runner(tmp_path, work=work).run(specs)
+    assert [kept(tmp_path, run(seed)) for seed in (1, 3, 5)] == [True, True, False]
 
 
 @pytest.mark.parametrize("fresh", [False, True])
