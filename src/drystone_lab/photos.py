@@ -17,6 +17,8 @@ import skimage
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageOps, JpegImagePlugin
 from scipy import ndimage
+from scipy.spatial.distance import pdist
+from skimage.metrics import contingency_table
 from skimage.transform import matrix_transform
 
 from drystone.errors import DrystoneError, ExitCode
@@ -262,11 +264,7 @@ def overlaps(truth: NDArray[np.uint16], labels: NDArray[np.uint16]) -> NDArray[n
     >>> overlaps(np.array([[1, 1, 0]], np.uint16), np.array([[0, 1, 1]], np.uint16)).round(3)
     array([[0.333]])
     """
-    n, m = int(truth.max()), int(labels.max())
-    both = np.bincount(
-        truth.ravel().astype(int) * (m + 1) + labels.ravel(), minlength=(n + 1) * (m + 1)
-    )
-    table = both.reshape(n + 1, m + 1)
+    table = contingency_table(truth, labels).toarray()
     inside = table[1:, 1:]
     union = table[1:].sum(axis=1)[:, None] + table[:, 1:].sum(axis=0)[None] - inside
     return np.asarray(inside / np.maximum(union, 1))
@@ -283,11 +281,7 @@ def _scale_error(made: Photograph, result: SegmentedPhoto) -> float | None:
     seen = np.column_stack([x.ravel(), y.ravel()])
     true = matrix_transform(seen, np.linalg.inv(made.homography)) / level.px_per_m
     found = matrix_transform(seen, result.from_photo) / result.px_per_m
-    far = [
-        np.hypot(*(points[:, None] - points[None]).transpose(2, 0, 1)) for points in (true, found)
-    ]
-    some = far[0] > 0
-    return float(100 * np.abs(far[1][some] / far[0][some] - 1).max())
+    return float(100 * np.abs(pdist(found) / pdist(true) - 1).max())
 
 
 def pixels(made: Photograph) -> NDArray[np.uint8]:

@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -39,36 +38,33 @@ SHORTEST = 0.04
 """Bends and ends of joints are at least this far apart along a bed; the wall is 1 high."""
 
 
-@dataclass(frozen=True, eq=False)
-class TiltedWall:
-    """A wall of height 1 on flat ground whose joints follow no grid."""
+TiltedWall = tuple[Points, ...]
+"""A wall of height 1 on flat ground whose joints follow no grid: corners of stone 1, 2, ...
 
-    # Corners of stone 1, 2, ...; counter-clockwise, not closed, x to the right and y up; without
-    # gaps between them
-    polygons: tuple[Points, ...]
+Counter-clockwise, not closed, x to the right and y up; without gaps between them.
+"""
 
-    def model(self) -> RigidBlockModel:
-        """Return its exact rigid block model."""
-        blocks = [
-            {"id": number, "polygon": polygon.tolist()}
-            for number, polygon in enumerate(self.polygons, start=1)
-        ]
-        return model_from_json({"blocks": blocks, "mu": TILTED_MU})
 
-    def picture(self, height_px: int, offset_px: ArrayLike = (0.0, 0.0)) -> Labels:
-        """Return its label image: a pixel belongs to the stone that its centre lies in.
+def exact_model(wall: TiltedWall) -> RigidBlockModel:
+    """Return the exact rigid block model of a wall."""
+    blocks = [{"id": number, "polygon": stone.tolist()} for number, stone in enumerate(wall, 1)]
+    return model_from_json({"blocks": blocks, "mu": TILTED_MU})
 
-        `offset_px` is where the lower left corner lies right of and above a pixel corner, 0 to 1.
-        """
-        scaled = [polygon * height_px + np.asarray(offset_px) for polygon in self.polygons]
-        width, height = np.ceil(np.max([p.max(axis=0) for p in scaled], axis=0)).astype(int)
-        labels = np.zeros((int(height), int(width)), np.uint32)
-        for number, polygon in enumerate(scaled, start=1):
-            mask, left, bottom = rasterise_polygon(polygon)
-            last, right = int(height) - bottom, left + mask.shape[1]
-            labels[last - mask.shape[0] : last, left:right][mask] = number
-        filled = np.flatnonzero(labels.any(axis=1))
-        return labels[: filled[-1] + 1]
+
+def picture_of(wall: TiltedWall, height_px: int, offset_px: ArrayLike = (0.0, 0.0)) -> Labels:
+    """Return the label image of a wall: a pixel belongs to the stone that its centre lies in.
+
+    `offset_px` is where the lower left corner lies right of and above a pixel corner, 0 to 1.
+    """
+    scaled = [stone * height_px + np.asarray(offset_px) for stone in wall]
+    width, height = np.ceil(np.max([p.max(axis=0) for p in scaled], axis=0)).astype(int)
+    labels = np.zeros((int(height), int(width)), np.uint32)
+    for number, polygon in enumerate(scaled, start=1):
+        mask, left, bottom = rasterise_polygon(polygon)
+        last, right = int(height) - bottom, left + mask.shape[1]
+        labels[last - mask.shape[0] : last, left:right][mask] = number
+    filled = np.flatnonzero(labels.any(axis=1))
+    return labels[: filled[-1] + 1]
 
 
 def tilted_wall(rng: Generator, courses: int) -> TiltedWall:
@@ -78,16 +74,16 @@ def tilted_wall(rng: Generator, courses: int) -> TiltedWall:
     pixel cannot be seen in a picture, but may carry a good part of the load.
 
     >>> wall = tilted_wall(np.random.default_rng(1), courses=3)
-    >>> len(wall.polygons), wall.picture(40).shape
+    >>> len(wall), picture_of(wall, 40).shape
     (7, (40, 36))
     """
     for _ in range(ATTEMPTS):
-        if polygons := _attempt(rng, courses):
-            return TiltedWall(polygons)
+        if wall := _attempt(rng, courses):
+            return wall
     raise ValueError(f"no wall of {courses} courses, {LENGTH} long, has joints far enough apart")
 
 
-def _attempt(rng: Generator, courses: int) -> tuple[Points, ...]:
+def _attempt(rng: Generator, courses: int) -> TiltedWall:
     """Draw course after course; give up, without stones, where joints come too close."""
     # The ends of the wall lean inwards by as many degrees.
     left, right = np.tan(np.radians(rng.permutation((3.0, 5.0))))
@@ -180,12 +176,12 @@ def refinement_errors(
         tilted_wall(np.random.default_rng(wall_seed), COURSES[i % len(COURSES)])
         for i, wall_seed in enumerate(seeds)
     ]
-    exact = [_alphas(wall.model()) for wall in drawn]
+    exact = [_alphas(exact_model(wall)) for wall in drawn]
     # An even sequence of sub-pixel positions (Roberts's R2)
     numbers = np.arange(offsets)[:, None]
     places = (0.5 + numbers * (0.7548776662466927, 0.5698402909980532)) % 1.0
     errors = [
-        np.abs(_alphas(model_of(wall.picture(height_px, place), TILTED_MU)) - true)
+        np.abs(_alphas(model_of(picture_of(wall, height_px, place), TILTED_MU)) - true)
         for height_px in heights_px
         for model_of in (from_pixels, from_outlines)
         for wall, true in zip(drawn, exact, strict=True)

@@ -18,7 +18,7 @@ from drystone.io.read_stones import read_stones
 from drystone.kernels.polygons import area_and_centroid, turn
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import GROUND, Block, Interface, RigidBlockModel
-from drystone_lab.pixels import tilted_wall
+from drystone_lab.pixels import exact_model, picture_of, tilted_wall
 from tests.naive.contacts import outlines_drawn_anew
 from tests.polygons import box_of, moved
 from tests.statics.walls import alphas, irregular, told
@@ -122,8 +122,8 @@ def test_every_id_has_a_closed_outline_of_about_its_area(labels):
 
 def test_the_model_of_a_picture_has_the_load_multipliers_of_the_wall():
     wall = tilted_wall(np.random.default_rng(5), courses=3)
-    model = model_of_traced(outlines_of_labels(wall.picture(160, (0.3, 0.6))))
-    exact = wall.model()
+    model = model_of_traced(outlines_of_labels(picture_of(wall, 160, (0.3, 0.6))))
+    exact = exact_model(wall)
     assert len(model.interfaces) == len(exact.interfaces)
     assert alphas(model) == pytest.approx(alphas(exact), abs=0.02)
 
@@ -131,7 +131,7 @@ def test_the_model_of_a_picture_has_the_load_multipliers_of_the_wall():
 @pytest.mark.parametrize("seed", range(2))
 def test_coarse_pictures_of_walls_stand_on_the_ground(seed):
     wall = tilted_wall(np.random.default_rng(seed), courses=3 + seed % 3)
-    model = model_of_traced(outlines_of_labels(wall.picture(40, (0.3, 0.6))))
+    model = model_of_traced(outlines_of_labels(picture_of(wall, 40, (0.3, 0.6))))
     assert lateral_resistance(model).stable
 
 
@@ -159,7 +159,7 @@ def settled_wall(seed, loose, lean):
     """A wall 200 high of polygons with gaps of about .01, moved and turned a little."""
     rng = np.random.default_rng(seed)
     placed = []
-    for polygon in tilted_wall(rng, courses=3).polygons:
+    for polygon in tilted_wall(rng, courses=3):
         whole = shapely.Polygon(polygon * 200.0)
         smaller = orient(whole.buffer(-0.005, join_style="mitre", mitre_limit=20.0))
         corners = shapely.get_coordinates(smaller)[:-1]
@@ -188,7 +188,7 @@ def test_a_square_in_a_notch_slides_out_over_a_face():
 
 @pytest.mark.parametrize("seed", range(2))
 def test_settled_walls_are_as_strong_as_those_without_gaps(seed):
-    exact = alphas(tilted_wall(np.random.default_rng(seed), courses=3).model())
+    exact = alphas(exact_model(tilted_wall(np.random.default_rng(seed), courses=3)))
     for loose, lean in ((0.0, 0.0), (0.02, 1e-4)):
         placed = settled_wall(seed, loose, lean)
         assert alphas(model_of(*placed)) == pytest.approx(exact, abs=1e-3)

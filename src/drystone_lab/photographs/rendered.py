@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from PIL import Image
 from scipy import ndimage
 from skimage.draw import polygon2mask
-from skimage.transform import matrix_transform, warp
+from skimage.transform import downscale_local_mean, matrix_transform, warp
 
 from drystone.generate import FourierSettings, RubbleSettings, fourier_stones, rubble_stones
 from drystone.kernels.raster import Mask
@@ -303,12 +303,8 @@ def exposed(ground: Light, homography: Homography, level: PhotoLevel, rng: Gener
     # Centres of px lie at halves in the homography and at whole numbers in `warp`.
     half = np.array([[1, 0, 0.5], [0, 1, 0.5], [0, 0, 1]])
     back = np.linalg.inv(half) @ np.linalg.inv(homography) @ half
-    planes = [
-        warp(ground[..., k], back, output_shape=shape, order=1, mode="edge", preserve_range=True)
-        for k in range(3)
-    ]
-    seen = [ndimage.gaussian_filter(plane, level.blur_px) for plane in planes]
-    light = np.clip(np.stack(seen, axis=-1), 0, 1)
+    seen = warp(ground, back, output_shape=shape, order=1, mode="edge", preserve_range=True)
+    light = np.clip(ndimage.gaussian_filter(seen, level.blur_px, axes=(0, 1)), 0, 1)
     grey = 255 * np.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)
     grey += rng.normal(0, level.noise, grey.shape)
     picture = Image.fromarray(np.clip(np.rint(grey), 0, 255).astype(np.uint8))
@@ -387,19 +383,14 @@ def _draw(
         inside = (row >= 0) & (col >= 0) & (row < count) & (col < count)
         dark = modules[np.where(inside, row, 0), np.where(inside, col, 0)] & inside
         light[dark] = INK
-    share = _coarse(on.astype(float))[..., None]
+    share = downscale_local_mean(on.astype(float), (_FINE, _FINE))[..., None]
     # Near the edge of the ground the box is cut; the paper itself is not.
     rows = slice(max(-top, 0), 2 * half - max(top + 2 * half - surface.shape[0], 0))
     cols = slice(max(-left, 0), 2 * half - max(left + 2 * half - surface.shape[1], 0))
     box = (slice(top + rows.start, top + rows.stop), slice(left + cols.start, left + cols.stop))
-    mixed = surface[box] * (1 - share[rows, cols]) + _coarse(light)[rows, cols][..., None]
-    surface[box] = mixed
+    paper_light = downscale_local_mean(light, (_FINE, _FINE))[rows, cols][..., None]
+    surface[box] = surface[box] * (1 - share[rows, cols]) + paper_light
     covered[box] |= share[rows, cols, 0] > 0
-
-
-def _coarse(values: NDArray[np.float64]) -> NDArray[np.float64]:
-    side = values.shape[0] // _FINE
-    return np.asarray(values.reshape(side, _FINE, side, _FINE).mean(axis=(1, 3)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -437,8 +428,11 @@ def photograph(level: PhotoLevel) -> Photograph:
     for number, box in enumerate(ndimage.find_objects(labels), start=1):
         mask = labels[box] == number
         rock = level.rocks[number % len(level.rocks)]
-        face = stone_face(rock, mask.shape, rng) * _shading(mask, level)[..., None]
-        lit[box][mask] = face[mask]
+        # A stone is domed: its rim turns away from the light.
+        depth = ndimage.distance_transform_edt(np.pad(mask, 1))[1:-1, 1:-1]
+        dome = np.sqrt(np.clip(1 - (1 - np.clip(depth / max(depth.max(), 1), 0, 1)) ** 2, 0, 1))
+        shading = (1 - (0.10 + 0.25 * level.shadow) * (1 - dome)).astype(np.float32)
+        lit[box][mask] = (stone_face(rock, mask.shape, rng) * shading[..., None])[mask]
     lit *= _lamp(shape, level, rng)[..., None]
     jpeg = exposed(lit, homography, level, rng)
     return Photograph(jpeg, labels, homography, level)
@@ -469,14 +463,6 @@ def _light_on_ground(labels: Labels, level: PhotoLevel, rng: Generator) -> Light
     dark = shadow[..., None]
     light = (1 - dark) + dark * (sky - 1) * (1 - level.shadow)
     return np.asarray(light * (1 - rim[..., None]), np.float32)
-
-
-def _shading(mask: NDArray[np.bool_], level: PhotoLevel) -> Plane:
-    """Return how bright a domed stone is: its rim turns away from the light."""
-    depth = ndimage.distance_transform_edt(np.pad(mask, 1))[1:-1, 1:-1]
-    dome = np.sqrt(np.clip(1 - (1 - np.clip(depth / max(depth.max(), 1), 0, 1)) ** 2, 0, 1))
-    side = 0.10 + 0.25 * level.shadow
-    return np.asarray(1 - side * (1 - dome), np.float32)
 
 
 def _lamp(shape: tuple[int, int], level: PhotoLevel, rng: Generator) -> Plane:
