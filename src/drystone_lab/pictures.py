@@ -13,7 +13,8 @@ from matplotlib.patches import Rectangle
 from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 
 from drystone.drawing import palette
-from drystone.drawing.canvas import add, draw_block, fit_axes
+from drystone.drawing.canvas import add, draw, draw_block, fit_axes
+from drystone.drawing.drawing import GROUND, MARGIN, Drawing, Surface
 from drystone.drawing.drawing import ground as ground_below
 from drystone.drawing.outlines import label_regions
 from drystone.drawing.palette import CLUSTER_COLOURS, GREY, OUTLINE_COLOUR, WEDGE_COLOUR
@@ -224,13 +225,6 @@ def plot_growth(
     ax.legend(fontsize=7, edgecolor="none", loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2)
 
 
-COLOURS = (CLUSTER_COLOURS[0], WEDGE_COLOUR, CLUSTER_COLOURS[11])
-"""By model; the first three."""
-
-MARKERS = ("o", "s", "^", "D")
-"""By series; the first four."""
-
-
 class Prediction(NamedTuple):
     """One measured value and what a model says of it."""
 
@@ -243,12 +237,12 @@ class Prediction(NamedTuple):
 
 
 def plot_predictions(predictions: Sequence[Prediction], band: str) -> Axes:
-    """Draw predicted over measured forces, bands as bars; at most three models, four series."""
+    """Draw predicted over measured forces, bands as bars."""
     ax = Figure(figsize=(6.0, 6.0)).add_subplot()
-    models = list(dict.fromkeys(p.model for p in predictions))
-    series = list(dict.fromkeys(p.series for p in predictions))
-    colours = dict(zip(models, COLOURS, strict=False))
-    markers = dict(zip(series, MARKERS, strict=False))
+    models = dict.fromkeys(p.model for p in predictions)
+    series = dict.fromkeys(p.series for p in predictions)
+    colours = {name: colour for name, (colour, _) in zip(models, LOOKS, strict=False)}
+    markers = {name: marker for name, (_, marker) in zip(series, LOOKS, strict=False)}
     for p in predictions:
         ax.errorbar(
             p.measured, p.predicted, yerr=[[p.predicted - p.low], [p.high - p.predicted]],
@@ -335,10 +329,6 @@ def sheet_of(panels: Sequence[Panel], columns: int) -> Figure:
 TitledWall = tuple[str, Wall, Mapping[int, int] | None]
 """What is written above a wall, the wall, and the cluster of each of its stones by id."""
 
-MARGIN, GROUND = 0.015, 0.035
-"""What pictures of walls leave beside and above them, over their width, and the depth of the ground
-over their height or a fifth of their width."""
-
 
 def plot_walls(walls: Sequence[TitledWall], columns: int) -> Figure:
     """Draw walls in rows, stones coloured by cluster and numbered in order, wedges dark red."""
@@ -404,15 +394,12 @@ def masonry_panel(
     """
     height, width = (units_per_px * size for size in labels.shape)
     margin, depth = MARGIN * width, GROUND * max(height, 0.2 * width)
-
-    def draw(ax: Axes) -> None:
-        ax = fit_axes(ax, (-margin, -depth, width + margin, height + margin))
-        add(ax, ground_below((-margin, -depth, width + margin, 0.0)))
-        for region in label_regions(labels):
-            cluster = clusters.get(region.id)
-            fill = palette.PLAIN_COLOUR if cluster is None else palette.cluster_colour(cluster)
-            loops = tuple(loop * units_per_px for loop in region.loops)
-            draw_block(ax, loops, f"stone-{region.id}", fill=fill, zorder=1)
-        ax.set_xlabel("px", fontsize=7, labelpad=1)
-
-    return Panel(title, wall_aspect(labels.shape[0] / labels.shape[1]), draw)
+    box = (-margin, -depth, width + margin, height + margin)
+    stones = []
+    for region in label_regions(labels):
+        cluster = clusters.get(region.id)
+        fill = palette.PLAIN_COLOUR if cluster is None else palette.cluster_colour(cluster)
+        loops = tuple(loop * units_per_px for loop in region.loops)
+        stones.append(Surface(f"stone-{region.id}", loops, fill))
+    drawing = Drawing((*ground_below(box), *stones), box, "px")
+    return Panel(title, wall_aspect(height / width), lambda ax: draw(drawing, ax))

@@ -75,14 +75,20 @@ SERIES = tuple(
 )
 
 
-def shear_wall(
-    series: ShearSeries,
-    vertical_kn: float,
-    mu: float = 0.62,
-    *,
-    level: bool = False,
-    halves_first: bool = False,
-) -> tuple[RigidBlockModel, Loads]:
+FRICTION = 0.62
+"""Of sawn stone on stone, and of the beam on it; assumed for both stones."""
+
+
+class Loading(NamedTuple):
+    """What a prediction depends on besides the wall."""
+
+    vertical_kn: float
+    level: bool = False
+    mu: float = FRICTION
+    halves_first: bool = False
+
+
+def shear_wall(series: ShearSeries, loading: Loading) -> tuple[RigidBlockModel, Loads]:
     """Make a tested wall and its loads.
 
     Courses of whole blocks alternate with courses that begin and end with half a block.  The beam
@@ -90,14 +96,14 @@ def shear_wall(
     counts as part of N, which acts down at its middle.
 
     >>> from drystone.statics.limit import lateral_resistance
-    >>> model, loads = shear_wall(SERIES[0], 30.0, level=True)
+    >>> model, loads = shear_wall(SERIES[0], Loading(30.0, level=True))
     >>> len(model.blocks), round(lateral_resistance(model, loads).right.alpha, 6)
     (50, 18.6)
     """
     kn_m2 = series.density_kg_m3 * GRAVITY * series.thickness / 1e3
     boxes = []  # left, bottom, right and top
     for course in range(series.course_count):
-        halves = (course % 2 == 0) == halves_first
+        halves = (course % 2 == 0) == loading.halves_first
         first = series.block_length / 2.0 if halves else series.block_length
         inner = np.arange(first, series.length - 1e-9, series.block_length)
         bottom = course * series.block_height
@@ -110,26 +116,20 @@ def shear_wall(
             "id": number,
             "polygon": [[x0, y0], [x1, y0], [x1, y1], [x0, y1]],
             "density": kn_m2,
-            "held": ["turn"] if level and number == beam else [],
+            "held": ["turn"] if loading.level and number == beam else [],
         }
         for number, (x0, y0, x1, y1) in enumerate(boxes, start=1)
     ]
-    model = model_from_json({"blocks": blocks, "mu": mu})
+    model = model_from_json({"blocks": blocks, "mu": loading.mu})
     middle = (series.length / 2.0, series.load_height)
     dead = weight(model)
     dead[-1] = 0.0
-    dead += point_load(model, beam, middle, (0.0, -vertical_kn))
+    dead += point_load(model, beam, middle, (0.0, -loading.vertical_kn))
     return model, Loads(dead, point_load(model, beam, middle, (1.0, 0.0)), "shear test")
 
 
-FRICTION = 0.62
-"""Of sawn stone on stone, and of the beam on it; assumed for both stones."""
-
 FRICTION_BAND = (0.55, 0.62, 0.70)
 RESTRAINTS = {False: "beam turns", True: "beam level"}
-
-ShearModel = Callable[["ShearSeries", "Loading"], "ShearForces"]
-"""The largest V that a wall carries."""
 
 
 class ShearForces(NamedTuple):
@@ -139,13 +139,8 @@ class ShearForces(NamedTuple):
     without_dilatancy: float | None
 
 
-class Loading(NamedTuple):
-    """What a prediction depends on besides the wall."""
-
-    vertical_kn: float
-    level: bool
-    mu: float = FRICTION
-    halves_first: bool = False
+ShearModel = Callable[[ShearSeries, Loading], ShearForces]
+"""The largest V that a wall carries."""
 
 
 def predict(series: ShearSeries, loading: Loading) -> ShearForces:
@@ -156,10 +151,7 @@ def predict(series: ShearSeries, loading: Loading) -> ShearForces:
     >>> predict(SERIES[0], Loading(30.0, level=True, mu=0.5)).associative
     15.0
     """
-    model, loads = shear_wall(
-        series, loading.vertical_kn, loading.mu, level=loading.level,
-        halves_first=loading.halves_first,
-    )  # fmt: skip
+    model, loads = shear_wall(series, loading)
     associative = lateral_resistance(model, loads).right.alpha
     without = nonassociative_load(model, "right", loads=loads).alpha
     return ShearForces(rounded(associative, 6), rounded(without, 6))
@@ -262,7 +254,7 @@ def _details(model: ShearModel) -> Rows:
         ]
         for vertical in (loads[0], loads[-1]):
             for name, varied, halves in variants:
-                loading = Loading(vertical, level=False, halves_first=halves)
+                loading = Loading(vertical, halves_first=halves)
                 values = (rounded(v, 2) for v in model(varied, loading))
                 yield series.name, vertical, name, *values
 

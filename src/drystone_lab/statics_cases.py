@@ -74,18 +74,12 @@ class KnownWall:
         return checked and below and low <= found.alpha <= high
 
 
-def single_block(width: float, height: float, mu: float) -> KnownWall:
-    """Return a block that slides at mu or overturns about its toe at b/h."""
-    alpha = min(mu, width / height)
-    name = f"block {width:g} x {height:g}: min(mu, b/h)"
-    return KnownWall(name, ((0.0, 0.0, width, height),), mu, alpha, alpha)
-
-
-def two_equal_blocks(width: float, height: float, mu: float) -> KnownWall:
-    """Return two aligned blocks, which overturn as one at b/(2h)."""
-    alpha = min(mu, width / (2.0 * height))
-    rows = ((0.0, 0.0, width, height), (0.0, height, width, height))
-    return KnownWall(f"two blocks {width:g} x {height:g}: min(mu, b/(2h))", rows, mu, alpha, alpha)
+def aligned_blocks(count: int, width: float, height: float, mu: float) -> KnownWall:
+    """Return a block, or two that lie on each other, which slide at mu or overturn as one."""
+    alpha = min(mu, width / (count * height))
+    rows = tuple((0.0, k * height, width, height) for k in range(count))
+    blocks, toe = ("block", "b/h") if count == 1 else ("two blocks", "b/(2h)")
+    return KnownWall(f"{blocks} {width:g} x {height:g}: min(mu, {toe})", rows, mu, alpha, alpha)
 
 
 def offset_stack(shift: float, mu: float) -> KnownWall:
@@ -127,8 +121,8 @@ def closed_forms() -> tuple[KnownWall, ...]:
     pairs = (1.0, 1.0, 0.65), (2.0, 1.0, 0.65), (3.0, 0.5, 0.9)
     shifts = 0.0, 0.1, 0.2, 0.4, 0.5
     return (
-        *(single_block(*block) for block in blocks),
-        *(two_equal_blocks(*pair) for pair in pairs),
+        *(aligned_blocks(1, *block) for block in blocks),
+        *(aligned_blocks(2, *pair) for pair in pairs),
         *(offset_stack(shift, mu) for mu in (0.9, 0.3) for shift in shifts),
         running_bond(),
     )

@@ -108,7 +108,7 @@ def test_points_bands_looks_and_legend():
         assert bar.get_segments()[0].tolist() == ends
     looks = [(bars[0].get_color(), bars[0].get_marker()) for bars in ax.containers]
     assert looks == [
-        (pictures.COLOURS[c], pictures.MARKERS[m]) for c, m in ((0, 0), (1, 0), (0, 1))
+        (pictures.LOOKS[c][0], pictures.LOOKS[m][1]) for c, m in ((0, 0), (1, 0), (0, 1))
     ]
     assert ax.get_xlim() == ax.get_ylim() == (0.0, pytest.approx(84.0))
     np.testing.assert_array_equal(*_line(ax, "equal").get_xydata().T)

@@ -7,7 +7,7 @@ from drystone.statics.flow.nonassociative import NonassociativeResult
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.result import LimitStatus
 from drystone_lab import shear
-from drystone_lab.shear import GRAVITY, SERIES, ShearForces, run, shear_wall
+from drystone_lab.shear import GRAVITY, SERIES, Loading, ShearForces, run, shear_wall
 from drystone_lab.table import BenchSettings
 
 WITHOUT = "without dilatancy"
@@ -65,14 +65,15 @@ def test_a_level_beam_slides_and_a_turning_one_overturns_with_some_of_the_wall(q
 
 @pytest.mark.parametrize("series", SERIES[:2], ids=lambda series: series.name)
 def test_each_kilonewton_on_a_turning_beam_adds_its_arm(series):
-    low, high = (lateral_resistance(*shear_wall(series, kn)).right.alpha for kn in (30.0, 130.0))
+    walls = [shear_wall(series, Loading(kn)) for kn in (30.0, 130.0)]
+    low, high = (lateral_resistance(*wall).right.alpha for wall in walls)
     assert high - low == pytest.approx(100.0 * series.length / 2 / series.load_height)
 
 
 @pytest.mark.parametrize(("series", "courses"), [(SERIES[0], 9), (SERIES[1], 8)])
 @pytest.mark.parametrize("halves_first", [False, True])
 def test_walls_are_in_running_bond(series, courses, halves_first):
-    model, loads = shear_wall(series, 30.0, halves_first=halves_first)
+    model, loads = shear_wall(series, Loading(30.0, halves_first=halves_first))
     assert series.course_count == courses
     whole = (courses + (not halves_first)) // 2
     assert len(model.blocks) == 5 * whole + 6 * (courses - whole) + 1

@@ -36,7 +36,7 @@ def test_what_the_cases_expect(case):
 
 def test_numbers_of_the_cases():
     """Sliding and overturning of 1 x 2 and the shifted block by hand: (.5 - .2) / .5 and so on."""
-    block, pair = statics_cases.single_block(1, 2, 0.7), statics_cases.two_equal_blocks(2, 1, 0.65)
+    block, pair = (statics_cases.aligned_blocks(*one) for one in ((1, 1, 2, 0.7), (2, 2, 1, 0.65)))
     assert (block.left, block.right, pair.left, pair.right) == (0.5, 0.5, 0.65, 0.65)
     stack = statics_cases.offset_stack(0.2, 0.9)
     assert (stack.left, stack.right) == pytest.approx((0.6, 0.4))

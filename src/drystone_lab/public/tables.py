@@ -81,8 +81,10 @@ UNITS = {PLACED: "placed share", SHAKE: "PGA, g"}
 
 def comparison(results: BenchResults) -> tuple[Table, ...]:
     """Return the figures of every method on every wall, on all walls, and the times."""
-    figures, columns = results.figures, {"<figures>": _columns(results.figures)}
-    words = BENCH["public"]
+    figures, words = results.figures, BENCH["public"]
+    named = ((UNITS.get(figure, figure), figure) for figure in figures)
+    titles = [text for name, short in named for text in (name, f"±{short}", f"best {short}")]
+    columns = {"<figures>": titles}
     each = {
         (wall, method): results.of(method, wall)
         for wall in results.walls
@@ -104,11 +106,6 @@ def comparison(results: BenchResults) -> tuple[Table, ...]:
         worded(words["everything"], everything, columns=columns),
         worded(words["times"], times),
     )
-
-
-def _columns(figures: Sequence[str]) -> tuple[str, ...]:
-    named = ((UNITS.get(figure, figure), figure) for figure in figures)
-    return tuple(text for name, short in named for text in (name, f"±{short}", f"best {short}"))
 
 
 def _cells(figures: Sequence[str], walls: Sequence[Sequence[KeptRun]]) -> tuple[Cell, ...]:
@@ -197,12 +194,11 @@ def holm(p_values: Sequence[float]) -> list[float]:
     >>> holm([0.01, 0.04, 0.03])
     [0.03, 0.06, 0.06]
     """
-    corrected = [0.0] * len(p_values)
-    largest = 0.0
-    for place, index in enumerate(sorted(range(len(p_values)), key=lambda k: p_values[k])):
-        largest = max(largest, min(1.0, (len(p_values) - place) * p_values[index]))
-        corrected[index] = largest
-    return corrected
+    order = np.argsort(p_values)
+    times = np.arange(len(p_values), 0, -1) * np.asarray(p_values)[order]
+    corrected = np.empty(len(p_values))
+    corrected[order] = np.minimum(1.0, np.maximum.accumulate(times))
+    return corrected.tolist()
 
 
 PairKey = tuple[str, str, str]

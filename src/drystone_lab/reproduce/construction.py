@@ -27,9 +27,14 @@ class Moment:
     """A state of construction, before one of the stones that were placed."""
 
     number: int  # Of the stone that comes next, from 1
-    wall: Wall
+    stage: Stage  # The wall before and after it
     workshop: Workshop  # All stones of the set
     settings: PlannerSettings
+
+    @property
+    def wall(self) -> Wall:
+        """What is built."""
+        return self.stage.before
 
     @cached_property
     def landscape(self) -> Landscape:
@@ -53,35 +58,14 @@ class Moment:
         return (poses[spots[0].pose], spots[0].row, spots[0].col) if spots else None
 
 
-@dataclass(frozen=True, eq=False)
-class Construction:
-    """A finished run, to be looked at step by step."""
-
-    stages: tuple[Stage, ...]  # The wall before and after each stone
-    workshop: Workshop  # The stones
-    settings: PlannerSettings
-
-    @property
-    def moments(self) -> Sequence[Moment]:
-        """The states before each stone that was placed."""
-        return [
-            Moment(number, stage.before, self.workshop, self.settings)
-            for number, stage in enumerate(self.stages, 1)
-        ]
-
-    @property
-    def wall(self) -> Wall:
-        """The finished wall."""
-        return self.stages[-1].after
-
-
-def construction(context: Context, wall: Target = PR) -> Construction:
-    """Do a run of pixels from the left, and take it apart."""
+def construction(context: Context, wall: Target = PR) -> Sequence[Moment]:
+    """Do a run of pixels from the left, and return the states before each stone."""
     (outcome,) = context.run((wall.run(context.seed),))
     stones = wall.source.stones(context.data)
     replay = replay_plan(outcome.as_plan, stones)
     workshop = Workshop.prepare(stones, replay.site, replay.settings)
-    return Construction(replay.stages, workshop, replay.settings)
+    stages = enumerate(replay.stages, 1)
+    return [Moment(number, stage, workshop, replay.settings) for number, stage in stages]
 
 
 @dataclass(frozen=True, eq=False)
@@ -145,17 +129,11 @@ class RestingPlace:
         return image
 
 
-def amid_course(built: Construction) -> RestingPlace:
+def amid_course(run: Sequence[Moment]) -> RestingPlace:
     """Return a stone of a run that has a left neighbour and two joints below, where it was placed.
 
     The first in the second half of the run, or else the stone that comes next halfway.
     """
-    half = len(built.stages) // 2
-    found = []
-    for moment, stage in zip(built.moments[half:], built.stages[half:], strict=True):
-        at = stage.group.placement
-        place = RestingPlace(moment, at.posed, at.row, at.col)
-        if {"NHR", "IWR"} <= place.values.keys():
-            return place
-        found.append(place)
-    return found[0]
+    second_half = [(moment, moment.stage.group.placement) for moment in run[len(run) // 2 :]]
+    places = [RestingPlace(moment, at.posed, at.row, at.col) for moment, at in second_half]
+    return next((place for place in places if {"NHR", "IWR"} <= place.values.keys()), places[0])

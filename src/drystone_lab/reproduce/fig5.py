@@ -67,39 +67,34 @@ PAPER_CLUSTERS = 7
 
 @dataclass(frozen=True, eq=False)
 class ClusteredStones:
-    """A set of stones in clusters: their number by threshold, and those at the paper's by id.
-
-    Merges are the distances at which Ward's linkage joins two clusters, ascending.
-    """
+    """A set of stones in clusters: their number by threshold, and those at the paper's by id."""
 
     name: str
     stones: StoneSet
     features: NDArray[np.float64]
     counts: Mapping[float, int]
-    merges: NDArray[np.float64]
     clusters: Mapping[int, int]
 
     @classmethod
     def of(cls, name: str, stones: StoneSet) -> "ClusteredStones":
         """Group a set of at least two stones by every threshold."""
         book = PoseBook()
-        features = stone_features(stones, book)
         by_distance = {
             distance: cluster_stones(stones, book, ClusterSettings(distance=distance))
-            for distance in (DISTANCE, *DISTANCES)
+            for distance in DISTANCES
         }
-        counts = {distance: len({*by_distance[distance].values()}) for distance in DISTANCES}
-        merges = np.sort(ward(features)[:, 2])
-        return cls(name, stones, features, counts, merges, by_distance[DISTANCE])
+        counts = {distance: len({*one.values()}) for distance, one in by_distance.items()}
+        return cls(name, stones, stone_features(stones, book), counts, by_distance[DISTANCE])
 
     @property
     def number(self) -> int:
         """Of the clusters."""
-        return len({*self.clusters.values()})
+        return self.counts[DISTANCE]
 
     def between(self, count: int) -> tuple[float, float]:
         """Return from which threshold on, and below which, there are so many clusters."""
-        return float(self.merges[-count]), float(self.merges[1 - count])
+        merges = np.sort(ward(self.features)[:, 2])  # distances at which two are joined
+        return float(merges[-count]), float(merges[1 - count])
 
 
 def grouped(
@@ -131,8 +126,7 @@ def _picture(sets: Sequence[ClusteredStones]) -> ItemFigure:
 
 def _claims(sets: Sequence[ClusteredStones]) -> Iterator[Claimed]:
     number, (low, high) = sets[0].number, sets[0].between(PAPER_CLUSTERS)
-    values = {"number": number, "low": low, "high": high}
-    yield Claimed("seven", number == PAPER_CLUSTERS, values)
+    yield Claimed("seven", number == PAPER_CLUSTERS, number=number, low=low, high=high)
 
 
 CLUSTERS = PaperItem(

@@ -3,6 +3,7 @@
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import product
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -200,17 +201,6 @@ def resting_places(moment: Moment) -> tuple[RestingPlace, ...]:
     return tuple(found)
 
 
-def extreme(places: Sequence[RestingPlace], name: str, *, best: bool) -> RestingPlace | None:
-    """Return the place where an index is best, or worst; None when it has a meaning nowhere.
-
-    Of equal ones the lowest, then that furthest to the left, then that of the smaller id.
-    """
-    meant = [place for place in places if name in place.values]
-    # NHR is best at 0, the others when they are large.
-    sign = 1.0 if (name == "NHR") == best else -1.0
-    return min(meant, key=lambda p: (sign * p.values[name], p.order), default=None)
-
-
 @dataclass(frozen=True, eq=False)
 class MomentPlaces:
     """A moment of a run, where stones that are left would rest, and a stone amid a course."""
@@ -220,14 +210,17 @@ class MomentPlaces:
     all: tuple[RestingPlace, ...]
 
     @property
-    def cases(self) -> Sequence[tuple[str, str, RestingPlace]]:
-        """The best and the worst place by each index: index, verdict and place."""
-        return [
-            (name, verdict, place)
-            for name in NAMES
-            for verdict in ("favourable", "unfavourable")
-            if (place := extreme(self.all, name, best=verdict == "favourable")) is not None
-        ]
+    def cases(self) -> Iterator[tuple[str, str, RestingPlace]]:
+        """The best and the worst place by each index: index, verdict and place.
+
+        Of equal ones the lowest, then that furthest to the left, then that of the smaller id.
+        """
+        for name, verdict in product(NAMES, ("favourable", "unfavourable")):
+            meant = [place for place in self.all if name in place.values]
+            # NHR is best at 0, the others when they are large.
+            sign = 1.0 if (name == "NHR") == (verdict == "favourable") else -1.0
+            if meant:
+                yield name, verdict, min(meant, key=lambda p: (sign * p.values[name], p.order))
 
 
 def _cells(place: RestingPlace, name: str) -> tuple[Cell, ...]:
@@ -251,10 +244,11 @@ def _ranges(found: MomentPlaces) -> Rows:
 
 
 def _pictures(found: MomentPlaces) -> Iterator[ItemFigure]:
-    rows = -(-len(found.cases) // 2)
+    cases = list(found.cases)
+    rows = -(-len(cases) // 2)
     figure = Figure(figsize=(7.2, rows * 1.28), layout="constrained")
     panels = figure.subplots(rows, 2, squeeze=False).ravel().tolist()
-    for ax, (index, verdict, place) in zip(panels, found.cases, strict=True):
+    for ax, (index, verdict, place) in zip(panels, cases, strict=True):
         title = f"{index} = {place.values[index]:.3f}, {verdict}: stone {place.posed.stone.id}"
         plot_indices(place, {index}, ax, title)
         ax.set_axis_off()
@@ -430,8 +424,8 @@ def _drawn(found: PositionTrial) -> ItemFigure:
 def _claims(found: PositionTrial) -> Iterator[Claimed]:
     resting, (*_, touching) = found.resting, found.maps
     inside, count = int(touching[resting[:, 0], resting[:, 1]].sum()), int(touching.sum())
-    values = {"inside": inside, "resting": len(resting), "more": count - inside}
-    yield Claimed("difference", inside == len(resting) == count, values)
+    same = inside == len(resting) == count
+    yield Claimed("difference", same, inside=inside, resting=len(resting), more=count - inside)
 
 
 POSITIONS = PaperItem(

@@ -228,7 +228,7 @@ class Falls:
 def falls(context: Context, wall: Target = PR) -> Falls:
     """Try all stones that are left before each step of a run, and treat those that fall."""
     count, found = 0, []
-    for moment in construction(context, wall).moments:
+    for moment in construction(context, wall):
         for stone_id in moment.remaining:
             trial = moment.trial(stone_id)
             if trial is None:

@@ -82,12 +82,13 @@ class Output:
     runs: tuple[RunSpec, ...]  # That the item is made of, for its JSON
 
 
-class Claimed(NamedTuple):
+class Claimed:
     """A claim of the paper, and what our walls say of it."""
 
-    key: str  # In ``paper.toml``, where claim and finding are written
-    holds: bool | None  # Whether they agree; None where that cannot be told
-    values: Mapping[str, object]  # What both are formatted with
+    def __init__(self, key: str, holds: bool | None, **values: object) -> None:
+        self.key = key  # In ``paper.toml``, where claim and finding are written
+        self.holds = holds  # Whether they agree; None where that cannot be told
+        self.values = values  # What both are formatted with
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -317,11 +318,6 @@ class PaperItem:
     times: Mapping[str, Callable[[Any], Rows]] = field(default_factory=dict)
     pictures: Callable[[Any], Iterable[ItemFigure]] = lambda _: ()  # Draws
     words: Mapping[str, Any] = field(default_factory=dict)  # Of ``paper.toml``
-
-    @property
-    def needs(self) -> tuple[str, ...]:
-        """Published stones without which it cannot be made, as paths in their folder."""
-        return tuple(self.words.get("needs", ()))
 
     def worded(self, words: Mapping[str, Any]) -> "PaperItem":
         """Return it with its words, and with the study that they name."""

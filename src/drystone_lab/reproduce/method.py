@@ -1,9 +1,7 @@
 """The method itself: Table 1, and Figs. 3, 4, 10, 11 and 12 on a real run."""
 
 from collections import defaultdict
-from collections.abc import Iterator
-from dataclasses import dataclass
-from functools import cached_property
+from collections.abc import Iterator, Sequence
 from itertools import islice
 from types import SimpleNamespace
 from typing import NamedTuple
@@ -35,7 +33,7 @@ from drystone.statics.model import GROUND, Interface, RigidBlockModel
 from drystone.statics.result import LateralResistance
 from drystone_lab import pictures
 from drystone_lab.reproduce.cells import rounded
-from drystone_lab.reproduce.construction import Construction, construction
+from drystone_lab.reproduce.construction import Moment, construction
 from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem
 from drystone_lab.reproduce.items import ITEMS
 from drystone_lab.table import Rows
@@ -56,30 +54,30 @@ TABLE1 = PaperItem(
 )
 
 
-def _steps(run: Construction) -> Rows:
-    area = float(run.wall.site.width_px * run.wall.site.height_px)
+def _steps(run: Sequence[Moment]) -> Rows:
     filled = 0.0
-    for number, stage in enumerate(run.stages, 1):
-        placement = stage.group.placement
-        filled += placement.posed.area_px / area
+    for moment in run:
+        group, clusters = moment.stage.group, moment.workshop.clusters
+        placement = group.placement
+        filled += placement.posed.area_px / moment.wall.labels.size
         yield (
-            number, placement.stone_id, run.workshop.clusters[placement.stone_id],
-            placement.posed.angle_deg, placement.rotation_moves, len(stage.group.wedges),
+            moment.number, placement.stone_id, clusters[placement.stone_id],
+            placement.posed.angle_deg, placement.rotation_moves, len(group.wedges),
             rounded(filled),
         )  # fmt: skip
 
 
-def _workflow(run: Construction) -> Iterator[ItemFigure]:
-    stones, count = run.workshop.stones, len(run.stages)
+def _workflow(run: Sequence[Moment]) -> Iterator[ItemFigure]:
+    stones, clusters, count = run[0].workshop.stones, run[0].workshop.clusters, len(run)
     walls = [
-        (f"after {number} stones", run.stages[number - 1].after, run.workshop.clusters)
+        (f"after {number} stones", run[number - 1].stage.after, clusters)
         for number in sorted({1, max(1, count // 3), max(1, 2 * count // 3), count})
     ]
     yield ItemFigure("fig3", pictures.plot_walls(walls, 2), {"placed": count, "count": len(stones)})
     free = "the landscape before the first stone: free between its bounds"
     panels = [
-        pictures.stones_panel("the stones", stones, run.workshop.clusters),
-        pictures.wall_panel(free, Wall.empty(run.wall.site), {}),
+        pictures.stones_panel("the stones", stones, clusters),
+        pictures.wall_panel(free, run[0].wall, {}),
     ]
     yield ItemFigure("fig4", pictures.sheet_of(panels, 2))
 
@@ -184,7 +182,7 @@ def _contact_forces(found: TwoStones) -> Rows:
 def _two_claims(found: TwoStones) -> Iterator[Claimed]:
     alpha, mu = found.both.right.alpha, found.model.mu
     holds = alpha is not None and abs(alpha - mu) < 1e-9
-    yield Claimed("sliding", holds, {"alpha": alpha, "mu": mu})
+    yield Claimed("sliding", holds, alpha=alpha, mu=mu)
 
 
 def _two_picture(found: TwoStones) -> ItemFigure:
@@ -231,19 +229,14 @@ def plot_boundary_edges(
     draw_legend(ax, legend)
 
 
-@dataclass(frozen=True, eq=False)
-class Blocks:
+class Blocks(NamedTuple):
     """Three stones of a wall as pixels, edges and rigid blocks; and the model of the whole."""
 
     wall: Target
     labels: Labels
+    edges: tuple[NDArray[np.float64], NDArray[np.float64]]  # Starts and ends
     model: RigidBlockModel
     whole: RigidBlockModel
-
-    @cached_property
-    def edges(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Pixel edges between two of them or one and the ground: starts and ends."""
-        return boundary_edges(self.labels)
 
 
 def blocks(context: Context, wall: Target = PR) -> Blocks:
@@ -251,7 +244,7 @@ def blocks(context: Context, wall: Target = PR) -> Blocks:
     built = context.wall(wall.run(context.seed))
     labels = three_stones(built)
     model, whole = (model_from_labels(each).model for each in (labels, built.labels))
-    return Blocks(wall, labels, model, whole)
+    return Blocks(wall, labels, boundary_edges(labels), model, whole)
 
 
 def three_stones(wall: Wall) -> Labels:
@@ -291,17 +284,13 @@ def boundary_edges(labels: Labels) -> tuple[NDArray[np.float64], NDArray[np.floa
     return np.delete(points, last, axis=0), np.delete(points, boundary.begins[:-1], axis=0)
 
 
-def _mean_normal(interface: Interface) -> NDArray[np.float64]:
-    # The mean over its pixel edges, each turned by a quarter: their sum is the way from end to
-    # end, turned.
-    way = interface.points[-1] - interface.points[0]
-    normal = np.array([-way[1], way[0]]) / np.hypot(*way)
-    return np.asarray(normal if normal @ np.array(interface.normal) >= 0 else -normal)
-
-
 def _apart_deg(interface: Interface) -> float:
-    cosine = float(_mean_normal(interface) @ np.array(interface.normal))
-    return float(np.degrees(np.arccos(min(1.0, cosine))))
+    """Return how far its normal is from the mean of those of its pixel edges.
+
+    That mean is across the way from end to end, which is the sum of the edges.
+    """
+    way = interface.points[-1] - interface.points[0]
+    return float(np.degrees(np.arcsin(abs(way @ interface.normal) / np.hypot(*way))))
 
 
 def _interfaces(found: Blocks) -> Rows:
@@ -333,8 +322,7 @@ def _picture(found: Blocks) -> ItemFigure:
 def _claims(found: Blocks) -> Iterator[Claimed]:
     angles = [_apart_deg(i) for i in found.whole.interfaces if len(i.points) == 2]
     tilted = sum(angle > 1.0 for angle in angles)
-    values = {"tilted": tilted, "count": len(angles), "most": max(angles)}
-    yield Claimed("normal", None, values)
+    yield Claimed("normal", None, tilted=tilted, count=len(angles), most=max(angles))
 
 
 PIC_TO_RI = PaperItem(

@@ -89,14 +89,6 @@ class NoiseLevel(NamedTuple):
 NoiseLevels = Sequence[NoiseLevel]
 
 
-def noise_levels(found: StudyWalls) -> NoiseLevels:
-    """Measure the published walls of every level."""
-    return [
-        NoiseLevel(group, reference_of(group.all[0].wall, found.context.data))
-        for group in found.by_wall
-    ]
-
-
 def published_of(levels: NoiseLevels) -> list[tuple[NoiseLevel, ReferenceWall]]:
     """Return the levels whose published walls are there, and these."""
     return [(level, level.reference) for level in levels if level.reference is not None]
@@ -123,15 +115,15 @@ def noise_findings(levels: NoiseLevels) -> Iterator[Claimed]:
     clear = reference is not None and (reference.clear or reference.rho <= 0)
     yield _trending("falls", levels, "F_SF", -1)
     agrees = full == len(walls) if walls else None
-    yield Claimed("always", agrees, {"full": full, "count": len(walls)})
+    yield Claimed("always", agrees, full=full, count=len(walls))
     yield from _between(levels)
     agrees = against["F_SF"] == len(low) if low else None
-    yield Claimed("random", agrees, {"told": told, "count": len(low)})
+    yield Claimed("random", agrees, told=told, count=len(low))
     yield _trending("resistance", levels, "F_LR", 0)
     yield _trending("interlocking", levels, "F_AV", 1)
     words = "too few published walls" if reference is None else reference.words()
     agrees = reference.rho > 0 if reference is not None and clear else None
-    yield Claimed("reference", agrees, {"words": words})
+    yield Claimed("reference", agrees, words=words)
     yield _trending("horizontality", levels, "F_AH", 0)
     yield _against_reference("as_full", levels, "F_SF")
     yield _against_reference("staggered", levels, "F_AV")
@@ -145,15 +137,15 @@ def _trending(key: str, levels: NoiseLevels, name: str, sign: int) -> Claimed:
     ]
     middles = [(level.noise, level.ours.median(name)) for level in levels]
     each = {"walls": trend(walls), "sets": trend(middles)}
-    words = [f"over {over}: {found.words()}" for over, found in each.items() if found is not None]
-    values, sets = {"words": "; ".join(words) + "." if words else "too few levels."}, each["sets"]
+    told = [f"over {over}: {found.words()}" for over, found in each.items() if found is not None]
+    words, sets = "; ".join(told) + "." if told else "too few levels.", each["sets"]
     if sets is None:
-        return Claimed(key, None, values)
+        return Claimed(key, None, words=words)
     if sign:
-        return Claimed(key, sets.rho * sign > 0 and sets.clear, values)
+        return Claimed(key, sets.rho * sign > 0 and sets.clear, words=words)
     # Eight medians may miss a trend that the walls do show.
     others = any(found.clear for found in each.values() if found is not None)
-    return Claimed(key, False if sets.clear else None if others else True, values)
+    return Claimed(key, False if sets.clear else None if others else True, words=words)
 
 
 def _between(levels: NoiseLevels) -> Iterator[Claimed]:
@@ -169,7 +161,7 @@ def _between(levels: NoiseLevels) -> Iterator[Claimed]:
     )
     there = levels[-1].noise == NOISES[-1]
     hardest = all(level.noise == NOISES[-1] for level in worst.values())
-    yield Claimed("hardest", hardest if there else None, {"words": words})
+    yield Claimed("hardest", hardest if there else None, words=words)
     # The first and the last have a neighbour on one side only: a mere trend sets them apart.
     filled = [level.least("F_SF") for level in levels]
     above = {
@@ -178,7 +170,7 @@ def _between(levels: NoiseLevels) -> Iterator[Claimed]:
     }
     if above:
         best = max(above, key=lambda noise: above[noise])
-        yield Claimed("surprising", None, {"best": best, "above": above[best]})
+        yield Claimed("surprising", None, best=best, above=above[best])
 
 
 def _against_reference(key: str, levels: NoiseLevels, name: str) -> Claimed:
@@ -189,8 +181,8 @@ def _against_reference(key: str, levels: NoiseLevels, name: str) -> Claimed:
     # Sizes of walls are rounded to px, so that walls of all stones differ in later digits.
     better = sum(round(ours, 3) >= round(theirs, 3) for _, ours, theirs in pairs)
     each = "; ".join(f"{noise} %: {ours:.3g} against {theirs:.3g}" for noise, ours, theirs in pairs)
-    values = {"better": better, "count": len(pairs), "each": each}
-    return Claimed(key, better == len(pairs) if pairs else None, values)
+    holds = better == len(pairs) if pairs else None
+    return Claimed(key, holds, better=better, count=len(pairs), each=each)
 
 
 def _references(levels: NoiseLevels) -> Rows:
@@ -296,7 +288,10 @@ def _series(levels: NoiseLevels, name: str) -> list[list[tuple[int, float | None
 
 
 NOISE = PaperItem(
-    then=noise_levels,
+    then=lambda found: [
+        NoiseLevel(group, reference_of(group.all[0].wall, found.context.data))
+        for group in found.by_wall
+    ],
     claims=noise_findings,
     tables={"reference": _references},
     pictures=_noise_pictures,
@@ -314,7 +309,7 @@ def turned_findings(found: StudyWalls) -> Iterator[Claimed]:
 def gain_of(key: str, gains: Sequence[float]) -> Claimed:
     """Say by how much a figure is larger with more orientations, by pairs of a set and seed."""
     if not gains:
-        return Claimed(key, None, {"words": "no wall of either has it."})
+        return Claimed(key, None, words="no wall of either has it.")
     higher, lower = sum(gain > 0 for gain in gains), sum(gain < 0 for gain in gains)
     # Most pairs share their stones with others, so the test is lenient with a gain.
     changed = higher + lower
@@ -325,7 +320,7 @@ def gain_of(key: str, gains: Sequence[float]) -> Claimed:
     )
     # Four pairs cannot pass a test at this level even if all of them agree.
     enough = 0.5 ** len(gains) < LEVEL
-    return Claimed(key, median(gains) > 0 and p < LEVEL if enough else None, {"words": words})
+    return Claimed(key, median(gains) > 0 and p < LEVEL if enough else None, words=words)
 
 
 TURNED = PaperItem(claims=turned_findings)

@@ -52,12 +52,11 @@ def rounded_findings(found: StudyWalls) -> Iterator[Claimed]:
             f"varied ones, {len(fixed)} and {len(varied)} walls"
         )
         if min(len(fixed), len(varied)) < 4:
-            values = {"shape": shape, "words": f"{words}: too few for a test."}
-            yield Claimed(name, None, values)
+            yield Claimed(name, None, shape=shape, words=f"{words}: too few for a test.")
             continue
         p = float(mannwhitneyu(varied, fixed, alternative="greater", method="asymptotic").pvalue)
         words = f"{words} (rank-sum test, one-sided: p {p:.2g})."
-        yield Claimed(name, p < LEVEL, {"shape": shape, "words": words})
+        yield Claimed(name, p < LEVEL, shape=shape, words=words)
 
 
 def _rounded_pictures(found: StudyWalls) -> Iterator[ItemFigure]:

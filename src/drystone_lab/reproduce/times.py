@@ -121,21 +121,21 @@ def step_findings(walls: BySampling) -> Iterator[Claimed]:
         for name, one in each.items()
     )
     most = all(o["placement"] > 0.5 and o["selection"] > o["stabilisation"] for o in each.values())
-    yield Claimed("placement", most, {"told": told})
+    yield Claimed("placement", most, told=told)
     stabilisation = max(one["stabilisation"] for one in each.values())
-    yield Claimed("stabilisation", stabilisation < 0.05, {"most": stabilisation})
+    yield Claimed("stabilisation", stabilisation < 0.05, most=stabilisation)
     stable = late_over_early([step.seconds for step in variant])
     # About as long at the end as at the start.
-    yield Claimed("stable", 1 / 1.5 < stable < 1.5, {"stable": stable})
+    yield Claimed("stable", 1 / 1.5 < stable < 1.5, stable=stable)
     selection = [procedure_seconds([step])["selection"] for step in variant]
     grows = late_over_early(selection) if min(selection) > 0 else None
     each_ms = [(s.stones, t / s.candidates) for s, t in zip(variant, selection, strict=True)]
-    values = {"grows": grows or 0.0, "words": _trend_words(each_ms)}
-    yield Claimed("grows", None if grows is None else grows > 1, values)
+    holds = None if grows is None else grows > 1
+    yield Claimed("grows", holds, grows=grows or 0.0, words=_trend_words(each_ms))
     falls = late_over_early([step.seconds for step in full])
     candidates = late_over_early([float(step.candidates) for step in full])
     words = _trend_words([(step.stones, step.seconds) for step in full])
-    yield Claimed("falls", falls < 1, {"falls": falls, "candidates": candidates, "words": words})
+    yield Claimed("falls", falls < 1, falls=falls, candidates=candidates, words=words)
 
 
 def _trend_words(pairs: Sequence[tuple[float, float | None]]) -> str:
@@ -212,17 +212,17 @@ def scale_findings(walls: Mapping[float, TimedWall]) -> Iterator[Claimed]:
     }
     for what, seconds in measures.items():
         if (law := fitted(list(seconds.items()))) is None:
-            yield Claimed("few", None, {"what": what})
+            yield Claimed("few", None, what=what)
         else:
             # The paper finds an exponent of 2 over the scale.
             near = abs(law.exponent - 2.0) <= 0.5
-            yield Claimed("quadratic", near, {"what": what, "power": law.exponent})
+            yield Claimed("quadratic", near, what=what, power=law.exponent)
     for scale, wall in walls.items():
         for what, seconds in measures.items():
             if (said := PAPER_S[what].get(wall.pixels)) is not None:
                 took = seconds[scale]
-                values = {"size": wall.size, "what": what, "said": said, "seconds": took}
-                yield Claimed("seconds", took <= said, values)
+                holds = took <= said
+                yield Claimed("seconds", holds, size=wall.size, what=what, said=said, seconds=took)
 
 
 def pixel_rows(name: str, by_scale: Mapping[float, TimedWall]) -> Rows:
@@ -331,8 +331,8 @@ def counts(walls: Sequence[GrowthWall]) -> Iterator[Claimed]:
         law = fitted(each)
         if law is None:
             raise ValueError("too few sizes")
-        values = {"power": law.exponent, "count": len(each)}
-        yield Claimed(sampling, abs(law.exponent - expected) <= 0.25, values)
+        near = abs(law.exponent - expected) <= 0.25
+        yield Claimed(sampling, near, power=law.exponent, count=len(each))
 
 
 GROWTH = PaperItem(

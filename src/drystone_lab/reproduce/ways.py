@@ -121,13 +121,12 @@ def _wedges_claims(found: StudyWalls) -> Iterator[Claimed]:
         wall, figures = found.wall(one), one.outcomes[0].figures
         area = float(figures["wedge_area"] or 0.0)
         tallest = max((wedge.mask.shape[0] for wedge in wall.wedges), default=0)
-        values = {
-            "number": one.wall.number, "name": one.wall.name, "count": len(wall.wedges),
-            "under": len({wedge.under for wedge in wall.wedges}), "placed": figures["placed"],
-            "share": 100 * area / (one.wall.width * one.wall.height),
-            "tallest": tallest / fmean(stone.posed.height_px for stone in wall.placements),
-        }  # fmt: skip
-        yield Claimed("needed", bool(wall.wedges), values)
+        yield Claimed(
+            "needed", bool(wall.wedges), number=one.wall.number, name=one.wall.name,
+            count=len(wall.wedges), under=len({wedge.under for wedge in wall.wedges}),
+            placed=figures["placed"], share=100 * area / (one.wall.width * one.wall.height),
+            tallest=tallest / fmean(stone.posed.height_px for stone in wall.placements),
+        )  # fmt: skip
 
 
 def _wedges(found: StudyWalls) -> Rows:
@@ -229,16 +228,15 @@ def _sampling_claims(found: StudyWalls) -> Iterator[Claimed]:
     counts = {one.way: one.median("candidates") or 0.0 for one in found}
     ratios = (f"{way} {count / counts['variant']:.2f}" for way, count in counts.items())
     # The paper counts sub-iterations: whether that agrees cannot be told.
-    yield Claimed("twice", None, {"ratios": ", ".join(ratios)})
+    yield Claimed("twice", None, ratios=", ".join(ratios))
     whole = ", ".join(f"{one.way} {one.whole}" for one in found)
     ends = Counter(outcome.plan["stopped"] for one in found for outcome in one.outcomes)
     stopped = ", ".join(f"'{reason}' {count} times" for reason, count in ends.most_common())
-    values = {"whole": whole, "seeds": len(found.seeds), "stopped": stopped}
-    yield Claimed("filled", None, values)
+    yield Claimed("filled", None, whole=whole, seeds=len(found.seeds), stopped=stopped)
     (full,) = found.of("full")
     plans = [outcome.plan["steps"] for outcome in full.outcomes]
     kinds = sum(plan not in plans[:place] for place, plan in enumerate(plans))
-    yield Claimed("chance", kinds == 1, {"kinds": kinds})
+    yield Claimed("chance", kinds == 1, kinds=kinds)
 
 
 SAMPLING = PaperItem(claims=_sampling_claims)
@@ -248,7 +246,7 @@ def _stabilised_claims(found: StudyWalls) -> Iterator[Claimed]:
     for group in found.by_wall:
         filled = {one.way: one.median("F_SF") or 0.0 for one in group}
         best = max(filled, key=lambda way: filled[way])
-        yield Claimed("together", best == "both", {"name": group.name, "best": best})
+        yield Claimed("together", best == "both", name=group.name, best=best)
 
 
 def _stabilised_picture(group: StudyWalls, number: int) -> ItemFigure:

@@ -63,22 +63,6 @@ def observation(episode: Episode, offers: int, columns: int) -> WallObservation:
     return {name: values.astype(np.float32) for name, values in seen.items()}
 
 
-def wall_picture(episode: Episode) -> NDArray[np.uint8]:
-    """Draw what is built, with what it carries above: always (400, 800, 3) RGB."""
-    figure = Figure(figsize=(8.0, 4.0), dpi=100)
-    canvas: Any = FigureCanvasAgg(figure)
-    ax = figure.add_axes((0.05, 0.14, 0.9, 0.76))
-    wall, actions = episode.build.wall, episode.build.actions
-    carried = (actions[-1].resistance.value or 0.0) if actions else 0.0
-    title = (
-        f"{len(actions)} stones built, {episode.aside} put aside, {episode.waiting} to come; "
-        f"F_SF {wall.filling:.2f}, F_LR {carried:.2f}"
-    )
-    plot_wall(wall, episode.workshop.clusters, ax, title=title)
-    canvas.draw()
-    return np.array(np.asarray(canvas.buffer_rgba())[..., :3])
-
-
 Illegal = Literal["aside", "error"]
 
 OPTIONS = ("stones", "site", "order")
@@ -215,13 +199,24 @@ class WallEnv(gymnasium.Env[WallObservation, np.int64]):
         return np.arange(self._offers) < len(self.episode.offers)
 
     def render(self) -> NDArray[np.uint8] | None:
-        """Draw the wall, (height, width, 3); None without a render mode."""
+        """Draw the wall with what it carries above, (400, 800, 3) RGB; None without a mode."""
         if self.render_mode is None:
             gymnasium.logger.warn(
                 "The wall is drawn with render_mode='rgb_array', which was not asked for."
             )
             return None
-        return wall_picture(self.episode)
+        figure = Figure(figsize=(8.0, 4.0), dpi=100)
+        canvas: Any = FigureCanvasAgg(figure)
+        ax = figure.add_axes((0.05, 0.14, 0.9, 0.76))
+        episode = self.episode
+        title = (
+            f"{len(episode.build.actions)} stones built, {episode.aside} put aside, "
+            f"{episode.waiting} to come; F_SF {episode.build.wall.filling:.2f}, "
+            f"F_LR {episode.carried:.2f}"
+        )
+        plot_wall(episode.build.wall, episode.workshop.clusters, ax, title=title)
+        canvas.draw()
+        return np.array(np.asarray(canvas.buffer_rgba())[..., :3])
 
     def __deepcopy__(self, memo: dict[int, Any]) -> "WallEnv":
         other = copy(self)
@@ -263,15 +258,14 @@ class WallEnv(gymnasium.Env[WallObservation, np.int64]):
     def _told(self, *, illegal: bool) -> tuple[WallObservation, dict[str, Any]]:
         """Return what is seen, and what is said beside; all figures when the wall is finished."""
         episode = self.episode
-        actions = episode.build.actions
         info: dict[str, Any] = {
             "stone": episode.stone_id or 0,
-            "placed": len(actions),
+            "placed": len(episode.build.actions),
             "aside": episode.aside,
             "illegal": illegal,
             "action_mask": self.action_masks().astype(np.int8),
             "F_SF": episode.build.wall.filling,
-            "F_LR": (actions[-1].resistance.value or 0.0) if actions else 0.0,
+            "F_LR": episode.carried,
         }
         if episode.over:
             figures = episode.figures

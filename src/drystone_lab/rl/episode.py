@@ -183,6 +183,12 @@ class Episode:
             self.aside += 1
 
     @property
+    def carried(self) -> float:
+        """F_LR of the wall as it is; 0 when it is empty."""
+        actions = self.build.actions
+        return (actions[-1].resistance.value or 0.0) if actions else 0.0
+
+    @property
     def figures(self) -> WallFigures | None:
         """All figures of merit of the wall as it is; None when it is empty."""
         return figures_of(self.build, self._settings.pin)
@@ -204,7 +210,7 @@ class Episode:
         so_far = WallFigures(
             stones=len(self.build.actions),
             F_SF=self.build.wall.filling,
-            F_LR=self.build.actions[-1].resistance.value or 0.0,
+            F_LR=self.carried,
             F_AV=0.0, F_AH=0.0, T_LEVEL=0.0, E_FLUSH=0.0,
         )  # fmt: skip
         return merit_of(so_far, self._possible, replace(self._settings.goal, F_AV=0.0, F_AH=0.0))

@@ -74,6 +74,6 @@ ITEMS = {
 
 def lay_needed(data):
     """Lay empty files in a folder in the place of the published stones."""
-    for name in NEEDY.needs:
+    for name in NEEDY.words["needs"]:
         (data / name).parent.mkdir(parents=True)
         (data / name).touch()

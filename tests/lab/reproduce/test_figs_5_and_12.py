@@ -92,7 +92,7 @@ def test_stones_are_at_their_features_in_the_colour_of_their_cluster():
 
 @pytest.fixture(scope="module")
 def labels(folder):
-    return method.three_stones(built(folder, RUBBLE).wall)
+    return method.three_stones(built(folder, RUBBLE)[-1].stage.after)
 
 
 def naive_edges(labels):
@@ -137,18 +137,19 @@ def test_edges_are_where_pixels_of_two_blocks_meet_and_interfaces_end_on_their_c
 
 def test_three_stones_stand_on_the_ground_and_on_each_other(folder, labels):
     run = built(folder, RUBBLE)
+    whole = run[-1].stage.after.labels
     ids = set(np.unique(labels).tolist()) - {0}
     assert len(ids) == 3
     for stone in ids:
-        assert np.count_nonzero(labels == stone) == np.count_nonzero(run.wall.labels == stone)
+        assert np.count_nonzero(labels == stone) == np.count_nonzero(whole == stone)
     on_ground = set(np.unique(labels[-1]).tolist()) - {0}
     assert len(on_ground) == 2
     (top,) = ids - on_ground
     pairs = {frozenset((i.block, i.other)) for i in model_from_labels(labels).model.interfaces}
     assert all(frozenset((top, below)) in pairs for below in on_ground)
     # Where none stands on two, the first three are taken.
-    first = {stage.stone.stone for stage in run.stages[:3]}
-    assert set(np.unique(method.three_stones(run.stages[2].after)).tolist()) == first | {0}
+    first = {moment.stage.stone.stone for moment in run[:3]}
+    assert set(np.unique(method.three_stones(run[2].stage.after)).tolist()) == first | {0}
 
 
 def test_the_mean_of_the_normals_of_pixels_is_across_the_ends():
@@ -161,8 +162,9 @@ def test_the_mean_of_the_normals_of_pixels_is_across_the_ends():
     mean = np.array([-way[:, 1], way[:, 0]]).mean(axis=1)
     mean /= np.hypot(*mean)
     (run,) = [i for i in model_from_labels(labels).model.interfaces if i.other == 1]
-    np.testing.assert_allclose(method._mean_normal(run), mean, atol=1e-12)
-    assert 0 < method._apart_deg(run) < 10
+    apart_deg = math.degrees(math.acos(abs(mean @ run.normal)))
+    assert method._apart_deg(run) == pytest.approx(apart_deg, abs=1e-5)
+    assert 0.1 < apart_deg < 10
 
 
 def test_normals_are_to_the_left_of_the_way():

@@ -36,7 +36,7 @@ def resting(height, width, stone, at, *others):
         numbered = replace(posed, stone=Stone(number, posed.mask))
         wall = wall.add(Placement(numbered, row, col))
     shop = SimpleNamespace(stock=SimpleNamespace(narrowest_px=1))
-    return RestingPlace(Moment(1, wall, shop, None), stone, *at)
+    return RestingPlace(Moment(1, SimpleNamespace(before=wall), shop, None), stone, *at)
 
 
 @pytest.fixture(scope="module")
@@ -101,7 +101,7 @@ def test_counting_again_agrees_everywhere(places):
 
 
 def test_the_stone_of_fig7_stands_where_the_run_left_it(folder, outputs, amid):
-    stage = built(folder, RUBBLE).stages[amid.moment.number - 1]
+    stage = built(folder, RUBBLE)[amid.moment.number - 1].stage
     table = rows(outputs["fig6-7"], "fig7")
     assert {row["stone"] for row in table} == {stage.group.placement.stone_id}
     assert {row["index"] for row in table} >= {"NHR", "IWR"}
@@ -246,7 +246,7 @@ def falls(occupied, pose):
 def test_every_stone_that_is_left_is_tried_and_those_that_fall_are_found(folder, unstable):
     tried = [
         (moment, stone_id, trial)
-        for moment in built(folder, SHARP).moments
+        for moment in built(folder, SHARP)
         for stone_id in moment.remaining
         if (trial := moment.trial(stone_id)) is not None
     ]
