@@ -7,10 +7,10 @@ import io
 import json
 import time
 import tomllib
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import NamedTuple
 
 import numpy as np
 import skimage
@@ -45,7 +45,7 @@ class RealPhoto:
     mask: str = ""  # a published mask or outlines, in the same folder
     # Columns and rows of the stones that were drawn by hand (three numbers are a circle: middle
     # and radius), in a picture of this width.
-    drawn: tuple[tuple[float, ...], ...] = ()
+    drawn: Sequence[Sequence[float]] = ()
     drawn_px: int = 0
     part: bool = False  # only some of the stones are known: precision says nothing
     box: Box | None = None  # left, upper, right, lower: cut out
@@ -54,13 +54,8 @@ class RealPhoto:
 _FILE = tomllib.loads((Path(__file__).parent / "photographs/real.toml").read_text("utf-8"))
 
 
-def _frozen(value: Any) -> Any:
-    return tuple(map(_frozen, value)) if isinstance(value, list) else value
-
-
 PHOTOS, COMPOSITES = (
-    tuple(RealPhoto(**{name: _frozen(value) for name, value in photo.items()}) for photo in photos)
-    for photos in (_FILE["photos"], _FILE["composites"])
+    tuple(RealPhoto(**photo) for photo in _FILE[name]) for name in ("photos", "composites")
 )
 """The photographs of the study; and real pebbles of the first one on other real grounds: edges
 and shadows are not real."""
@@ -137,7 +132,7 @@ def truth_of(photo: RealPhoto, data: Path | None, size_px: tuple[int, int]) -> L
     if path.suffix == ".geojson":
         features = json.loads(path.read_text(encoding="utf-8"))["features"]
         rings = (np.ravel(one["geometry"]["coordinates"][0]) for one in features)
-        return _drawn(tuple(tuple(map(float, ring)) for ring in rings), size_px, 1.0)
+        return _drawn([ring.tolist() for ring in rings], size_px, 1.0)
     values = np.asarray(_opened(photo.mask, photo.box, data))
     labels = _on_board(values) if values.dtype == np.uint8 else values
     resized = Image.fromarray(labels.astype(np.int32)).resize(size_px, Image.Resampling.NEAREST)
@@ -151,7 +146,7 @@ def _path(name: str, data: Path | None) -> Path | None:
     return path if path is not None and path.is_file() else None
 
 
-def _drawn(stones: tuple[tuple[float, ...], ...], size_px: tuple[int, int], scale: float) -> Labels:
+def _drawn(stones: Sequence[Sequence[float]], size_px: tuple[int, int], scale: float) -> Labels:
     picture = Image.new("I", size_px)
     draw = ImageDraw.Draw(picture)
     for number, stone in enumerate(stones, start=1):
@@ -178,8 +173,7 @@ MATCHED = 0.5
 """Intersection over union from which on a stone counts as found."""
 
 
-@dataclass(frozen=True)
-class Score:
+class Score(NamedTuple):
     """What was found of what is there."""
 
     stones: int  # stones, found: Whole stones in the photograph, and stones that were found

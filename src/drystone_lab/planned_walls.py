@@ -117,17 +117,16 @@ def _row(wall: PlannedWall) -> tuple[Cell, ...]:
     )  # fmt: skip
 
 
-BothSides = tuple[float | None, float | None]
-
-
 class EngineWall(NamedTuple):
     """A wall in the engine; ends are to the left and to the right."""
 
     name: str
     stones: int  # in it
     built: BuildUp
-    alphas: BothSides  # load multipliers of the plan
-    tilts: BothSides  # tangents at which it comes down; None when it fell before, or never
+    alphas: tuple[float | None, float | None]  # load multipliers of the plan
+    tilts: tuple[
+        float | None, float | None
+    ]  # tangents at which it comes down; None when it fell before, or never
 
 
 def run_engine(settings: BenchSettings) -> tuple[Table, ...]:

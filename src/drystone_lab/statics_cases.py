@@ -56,19 +56,12 @@ class KnownWall:
         low, high = self.nonassociative
         return f"{low:g} to {high:g}" if low else f"at most {high:g}, or none"
 
-    def fits(self, found: LimitResult) -> bool:
-        """Tell whether a load factor is certified, and the one that is known."""
-        if found.certificate is None or found.alpha is None:
-            return False
-        known = self.left if found.direction == "left" else self.right
-        return found.certificate.holds and abs(found.alpha - known) <= self.tolerance
-
-    def fits_without_dilatancy(self, found: NonassociativeResult, upper: float | None) -> bool:
+    def fits_without_dilatancy(self, found: NonassociativeResult, associative: float) -> bool:
         """Tell whether a factor is checked, in its range, and not above the associative one."""
         if found.alpha is None:
             return self.may_not_converge
         checked = found.check is not None and found.check.holds
-        below = upper is not None and found.alpha <= upper + 1e-7  # for rounding
+        below = found.alpha <= associative + 1e-7  # for rounding
         known = self.left if found.direction == "left" else self.right
         low, high = self.nonassociative or (known - self.tolerance, known + self.tolerance)
         return checked and below and low <= found.alpha <= high
@@ -291,12 +284,13 @@ def _rows(case: KnownWall, *, both_rules: bool) -> list[CaseRow]:
 def _row(case: KnownWall, found: LimitResult, other: NonassociativeResult | None = None) -> CaseRow:
     left = found.direction == "left"
     known = case.left if left else case.right
-    fits = case.fits(found)
-    if other is not None:
+    difference = None if found.alpha is None else abs(found.alpha - known)
+    fits = found.certificate is not None and found.certificate.holds
+    fits = fits and difference is not None and difference <= case.tolerance
+    if other is not None and found.alpha is not None:
         fits = fits and case.fits_without_dilatancy(other, found.alpha)
     return CaseRow(
-        case.name, case.mu, "-x" if left else "+x", known, found.alpha,
-        None if found.alpha is None else abs(found.alpha - known),
+        case.name, case.mu, "-x" if left else "+x", known, found.alpha, difference,
         None if found.certificate is None else found.certificate.gap, case.accepted,
         None if other is None else other.alpha, "pass" if fits else "miss",
     )  # fmt: skip

@@ -124,8 +124,8 @@ def worded(
     return Table(title, tuple(names), tuple(rows), (*notes, *more))
 
 
-BENCH: Mapping[str, Mapping[str, Any]] = MappingProxyType(
-    tomllib.loads(Path(__file__).with_name("tables.toml").read_text("utf-8"))
+BENCH: Mapping[str, Mapping[str, Any]] = tomllib.loads(
+    Path(__file__).with_name("tables.toml").read_text("utf-8")
 )
 """The suites of `drystone bench` by name, and words of their tables."""
 

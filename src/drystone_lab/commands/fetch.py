@@ -20,7 +20,9 @@ def run(arguments: argparse.Namespace) -> ExitCode:
         raise UsageError("E138", what, where="fetch", cure=cure)
     names = list(dict.fromkeys(arguments.sets))
     folder = destination(arguments.output)
-    fetched = {name: fetch_set(SETS[name], folder, address=RAW) for name in names}
+    fetched = [
+        (name, file) for name in names for file in fetch_set(SETS[name], folder, address=RAW)
+    ]
     cite = [PAPER, *(SETS[name].source for name in names)]
     if arguments.json:
         files = [
@@ -28,12 +30,11 @@ def run(arguments: argparse.Namespace) -> ExitCode:
                 "set": name, "path": str(file.path), "downloaded": file.downloaded,
                 "sha256": file.file.sha256, "source": f"{RAW}/{file.file.address}",
             }
-            for name, files in fetched.items()
-            for file in files
+            for name, file in fetched
         ]  # fmt: skip
         print_json({"folder": str(folder), "files": files, "cite": cite, "licence": LICENCE})
         return ExitCode.DONE
-    for file in (file for files in fetched.values() for file in files):
+    for _, file in fetched:
         print(f"{file.path}  {'downloaded' if file.downloaded else 'was there'}, contents right")
     print(f"\nTo use the folder elsewhere: DRYSTONE_DATA={folder}")
     print(f"\nReleased with {REPOSITORY}. Cite:")

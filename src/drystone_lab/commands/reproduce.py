@@ -36,10 +36,9 @@ def run(arguments: argparse.Namespace, items: "Mapping[str, PaperItem] | None" =
         if data is not None and not data.is_dir():
             print(f"drystone: there is no folder {data} of published data", file=sys.stderr)
             data = None
-        tell = (lambda _: None) if arguments.quiet else say
         for made in reproduce(
             names, folder, items, data=data, quick=arguments.quick, seed=arguments.seed,
-            again=arguments.again, work=work, say=tell,
+            again=arguments.again, work=work, say=(lambda _: None) if arguments.quiet else say,
         ):  # fmt: skip
             done.append(made)
             if made.error is not None:

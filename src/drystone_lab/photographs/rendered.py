@@ -69,6 +69,7 @@ LEVELS = tuple(
 
 
 Labels = NDArray[np.uint16]
+Window = tuple[slice, slice]
 TRIES = 400
 
 
@@ -129,9 +130,9 @@ class _Table:
     def drop(self, mask: Mask, middles: NDArray[np.intp], rng: Generator, blocked: Mask) -> None:
         """Lay a stone at one of the places where it covers nothing that is blocked."""
         for middle in rng.integers(len(middles), size=TRIES):
-            row, col = (int(k) for k in middles[middle] - np.array(mask.shape) // 2)
-            if self._holds(row, col, mask) and not (blocked[_box(row, col, mask)] & mask).any():
-                self._lay(row, col, mask)
+            box = self._box(middles[middle] - np.array(mask.shape) // 2, mask)
+            if box is not None and not (blocked[box] & mask).any():
+                self._lay(box, mask)
                 return
 
     def push(self, mask: Mask, rng: Generator) -> None:
@@ -139,42 +140,38 @@ class _Table:
         for _ in range(TRIES // 10):
             beside = int(rng.integers(1, self.count + 1))
             angle = rng.uniform(0, 2 * np.pi)
-            place = self._contact(beside, mask, np.array([np.sin(angle), np.cos(angle)]))
-            if place is not None:
-                self._lay(*place, mask)
+            box = self._contact(beside, mask, np.array([np.sin(angle), np.cos(angle)]))
+            if box is not None:
+                self._lay(box, mask)
                 return
 
-    def _contact(self, beside: int, mask: Mask, way: NDArray[np.float64]) -> tuple[int, int] | None:
+    def _contact(self, beside: int, mask: Mask, way: NDArray[np.float64]) -> Window | None:
         """Return where a stone that comes along a ray meets the other; None when it cannot lie."""
         old = self.labels == beside
         middle = np.argwhere(old).mean(axis=0) - np.array(mask.shape) / 2
         reach = int(max(mask.shape) + 2 * np.sqrt(old.sum()))
         for near in range(reach):
-            row, col = (int(k) for k in middle + way * near)
-            if not self._holds(row, col, mask):
+            box = self._box(middle + way * near, mask)
+            if box is None:
                 return None
-            box = _box(row, col, mask)
             if not (old[box] & mask).any():
                 bad = self.outside[box] | (self.labels[box] != 0)
-                return None if (bad & mask).any() else (row, col)
+                return None if (bad & mask).any() else box
         return None
 
-    def _holds(self, row: int, col: int, mask: Mask) -> bool:
-        height, width = self.labels.shape
-        return (
-            row >= 0 and col >= 0 and row + mask.shape[0] <= height and col + mask.shape[1] <= width
-        )
+    def _box(self, corner: NDArray[np.floating], mask: Mask) -> Window | None:
+        """Return the window of a stone from its upper left corner; None where it has no room."""
+        row, col = (int(k) for k in corner)
+        box = slice(row, row + mask.shape[0]), slice(col, col + mask.shape[1])
+        inside = min(row, col) >= 0 and self.labels[box].shape == mask.shape
+        return box if inside else None
 
-    def _lay(self, row: int, col: int, mask: Mask) -> None:
+    def _lay(self, box: Window, mask: Mask) -> None:
         self.count += 1
-        self.labels[_box(row, col, mask)][mask] = self.count
-        gap, (height, width) = self.gap_px, mask.shape
-        near = np.s_[max(row - gap, 0) : row + height + gap, max(col - gap, 0) : col + width + gap]
-        self.taken[near] |= ndimage.distance_transform_edt(self.labels[near] == 0) < gap
-
-
-def _box(row: int, col: int, mask: Mask) -> tuple[slice, slice]:
-    return slice(row, row + mask.shape[0]), slice(col, col + mask.shape[1])
+        self.labels[box][mask] = self.count
+        gap = self.gap_px
+        rows, cols = (slice(max(one.start - gap, 0), one.stop + gap) for one in box)
+        self.taken[rows, cols] |= ndimage.distance_transform_edt(self.labels[rows, cols] == 0) < gap
 
 
 Plane = NDArray[np.float32]
@@ -271,10 +268,10 @@ _TURNS = {
 """How a picture is stored that a viewer turns back for its EXIF orientation."""
 
 
-def view_of(level: PhotoLevel) -> tuple[Homography, tuple[int, int]]:
-    """Return the homography from the ground to the photograph, and the ground that is seen.
+def view_of(level: PhotoLevel) -> tuple[Homography, Mask]:
+    """Return the homography from the ground to the photograph, and where the ground is seen.
 
-    The homography takes ground px to px of the photograph; the ground is (height, width) in px.
+    The homography takes ground px to px of the photograph; the mask is as large as the ground.
     """
     focal = 1.2 * level.width_px  # as that of a phone
     tilt, turn = math.radians(level.tilt_deg), math.radians(level.turn_deg)
@@ -284,17 +281,15 @@ def view_of(level: PhotoLevel) -> tuple[Homography, tuple[int, int]]:
     look = np.array([[focal, 0, 0], [0, focal * math.cos(tilt), 0], [0, -math.sin(tilt), focal]])
     middle = np.array([[1, 0, level.width_px / 2], [0, 1, level.height_px / 2], [0, 0, 1]])
     centred = middle @ look @ spin
-    corners = matrix_transform(frame_corners(level), np.linalg.inv(centred))
+    width, height = level.width_px, level.height_px
+    frame = np.array([[0, 0], [width, 0], [width, height], [0, height]], float)
+    corners = matrix_transform(frame, np.linalg.inv(centred))
     low, high = np.floor(corners.min(axis=0)), np.ceil(corners.max(axis=0))
     shift = np.array([[1, 0, low[0]], [0, 1, low[1]], [0, 0, 1]])
+    homography = centred @ shift
+    corners = matrix_transform(frame, np.linalg.inv(homography))
     width, height = (int(side) for side in high - low)
-    return centred @ shift, (height, width)
-
-
-def frame_corners(level: PhotoLevel) -> NDArray[np.float64]:
-    """Return the corners of the photograph, (4, 2), in turn."""
-    width, height = level.width_px, level.height_px
-    return np.array([[0, 0], [width, 0], [width, height], [0, height]], float)
+    return homography, polygon2mask((height, width), corners[:, ::-1])
 
 
 def exposed(ground: Light, homography: Homography, level: PhotoLevel, rng: Generator) -> bytes:
@@ -393,8 +388,7 @@ def _draw(
     covered[box] |= share[rows, cols, 0] > 0
 
 
-@dataclass(frozen=True, eq=False)
-class Photograph:
+class Photograph(NamedTuple):
     """A rendered photograph and the truth."""
 
     jpeg: bytes  # The file
@@ -417,10 +411,8 @@ class Photograph:
 def photograph(level: PhotoLevel) -> Photograph:
     """Render a photograph."""
     rng = np.random.default_rng(level.seed)
-    homography, shape = view_of(level)
-    corners = matrix_transform(frame_corners(level), np.linalg.inv(homography))
-    seen = polygon2mask(shape, corners[:, ::-1])
-    surface = ground_surface(level.ground, shape, rng)
+    homography, seen = view_of(level)
+    surface = ground_surface(level.ground, seen.shape, rng)
     markers = place_markers(level, surface, seen)
     labels = lay_stones(level, markers, seen, rng)
     light = _light_on_ground(labels, level, rng)
@@ -433,7 +425,7 @@ def photograph(level: PhotoLevel) -> Photograph:
         dome = np.sqrt(np.clip(1 - (1 - np.clip(depth / max(depth.max(), 1), 0, 1)) ** 2, 0, 1))
         shading = (1 - (0.10 + 0.25 * level.shadow) * (1 - dome)).astype(np.float32)
         lit[box][mask] = (stone_face(rock, mask.shape, rng) * shading[..., None])[mask]
-    lit *= _lamp(shape, level, rng)[..., None]
+    lit *= _lamp(seen.shape, level, rng)[..., None]
     jpeg = exposed(lit, homography, level, rng)
     return Photograph(jpeg, labels, homography, level)
 

@@ -6,8 +6,6 @@ from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-import numpy as np
-
 from drystone.contacts.outlines import outlines_of_labels
 from drystone.physics.building import ROUNDED
 from drystone.physics.scene import EngineScene
@@ -29,10 +27,8 @@ def pga_of(spec: RunSpec, outcome: RunOutcome, data: Path | None) -> float | Non
     if not outcome.figures["placed"]:
         return None
     wall = outcome.wall(spec, data)
-    if wall.outlines is not None:
-        outlines = {block: np.asarray(corners) for block, corners in wall.outlines.blocks}
-    else:
-        outlines = outlines_of_labels(wall.labels)
+    exact = wall.outlines
+    outlines = outlines_of_labels(wall.labels) if exact is None else dict(exact.blocks)
     # Wedges may fall out: the score is about stones.
     stones = frozenset(placement.stone_id for placement in wall.placements)
     return shake_once(EngineScene(outlines, spec.settings().mu), ROUNDED, watched=stones)
@@ -88,8 +84,7 @@ def _done(
         TemporaryDirectory(prefix="drystone-bench-") if store is None else nullcontext(store) as at,
         work_of(settings.jobs, settings.dask) as work,
     ):
-        plans = Path(at) / "runs"
-        runner = Runner(plans, settings.data, work, settings.say, again=settings.again)
+        runner = Runner(Path(at) / "runs", settings.data, work, settings.say, again=settings.again)
         outcomes = runner.run([spec for *_, spec in tasks])
     runs = [
         KeptRun.of(wall, method, spec.seed, outcome, settings.changes, made_at)

@@ -7,7 +7,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from importlib.metadata import entry_points
 from pathlib import Path
-from types import MappingProxyType
 from typing import Any
 
 from drystone.errors import UsageError
@@ -22,18 +21,16 @@ SUITE_VERSION = 1
 
 ALL = "all"
 
-_WALLS: Mapping[str, tuple[Target, ...]] = MappingProxyType(
-    {
-        suite: tuple(
-            replace(wall, name=wall.name.removesuffix(" framed"), suite=suite) for wall in walls
-        )
-        for suite, walls in {
-            "masons": (made.PR_560, made.PR_600, made.R_FRAMED, made.IR_FRAMED),
-            **made.made_walls(Path(__file__).with_name("suites.toml")),
-            "noise": made.NOISY,
-        }.items()
-    }
-)
+_WALLS: Mapping[str, tuple[Target, ...]] = {
+    suite: tuple(
+        replace(wall, name=wall.name.removesuffix(" framed"), suite=suite) for wall in walls
+    )
+    for suite, walls in {
+        "masons": (made.PR_560, made.PR_600, made.R_FRAMED, made.IR_FRAMED),
+        **made.made_walls(Path(__file__).with_name("suites.toml")),
+        "noise": made.NOISY,
+    }.items()
+}
 
 PUBLIC_SUITES: Mapping[str, str] = BENCH["public"]["suites"]
 """What each is about.  Of generated stones there are .85 of the wall, within .01."""

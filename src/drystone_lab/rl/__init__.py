@@ -5,15 +5,9 @@ package imports it.  The policy that was trained with it needs no extra
 (:mod:`drystone.selection.policies.learned`).
 """
 
-from drystone.errors import UsageError
-
-try:
-    import gymnasium
-except ImportError as error:
-    what = "gymnasium is not installed, and walls for reinforcement learning are its environments."
-    cure = "Install it with `pip install 'drystone[rl]'`."
-    raise UsageError("E150", what, where="drystone_lab.rl", cure=cure) from error
+from drystone.errors import extra
 
 ENVIRONMENT = "drystone/Wall-v0"
 
-gymnasium.register(ENVIRONMENT, entry_point="drystone_lab.rl.env:WallEnv")
+_gymnasium = extra("gymnasium", "knows walls to learn on", "drystone_lab.rl", "rl", "E150")
+_gymnasium.register(ENVIRONMENT, entry_point="drystone_lab.rl.env:WallEnv")

@@ -143,7 +143,6 @@ class WallEnv(gymnasium.Env[WallObservation, np.int64]):
         self._offers, self._columns = offers, columns
         self._illegal = illegal
         self._episode: Episode | None = None
-        self._potential = 0.0
         self._ended = False
 
     def reset(
@@ -159,7 +158,6 @@ class WallEnv(gymnasium.Env[WallObservation, np.int64]):
         stones, site, order = self._given(options or {})
         workshop = Workshop.prepare(stones, site, self.settings)
         self._episode = Episode(workshop, order, self.settings, self._offers)
-        self._potential = self._episode.potential
         self._ended = False
         return self._told(illegal=False)
 
@@ -184,12 +182,11 @@ class WallEnv(gymnasium.Env[WallObservation, np.int64]):
                 f"{int(action)} is not among the {len(episode.offers)} places offered",
                 "Ask `action_masks` which are.",
             )
+        before = episode.potential
         episode.take(int(action) if legal else None)
-        before, self._potential = self._potential, episode.potential
-        reward = self._potential - before
         self._ended = episode.over
         seen, info = self._told(illegal=not legal)
-        return seen, reward, self._ended, False, info
+        return seen, episode.potential - before, self._ended, False, info
 
     def action_masks(self) -> NDArray[np.bool_]:
         """Return which actions are allowed, (offers,): none when the wall is finished.

@@ -125,9 +125,8 @@ class Episode:
         self.build = Build.empty(
             workshop.site, settings.mu, workshop.stock.mean_area_px, exact=exact
         )
-        fitting = set(workshop.fitting)
         arriving = workshop.fitting if order is None else order
-        self._waiting = [i for i in arriving if i in fitting]
+        self._waiting = [i for i in arriving if i in workshop.fitting]
         self._settings = settings
         self._most = most
         self._possible = possible_filling(self.workshop)

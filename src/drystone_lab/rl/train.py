@@ -85,26 +85,19 @@ def branching(workshop: Workshop, choose: Choose, seed: Sequence[int]) -> Branch
     return Branching(features(found.offers), np.array(merits))
 
 
-def fitted(branchings: Sequence[Branching], scale: Floats, strength: float) -> Floats:
+def fitted(branchings: Sequence[Branching], strength: float) -> Floats:
     """Return the weights that say best which places lead to better walls.
 
     Least squares on the differences within each branching, drawn towards 0 (ridge regression).
+    Features count by how much they differ between the places of one stone: over the root of their
+    mean variance within a branching, if they differ at all.
     """
-    pairs = [one.centred for one in branchings]
-    x = np.concatenate([rows for rows, _ in pairs]) / scale
-    y = np.concatenate([merits for _, merits in pairs])
+    x, y = map(np.concatenate, zip(*(one.centred for one in branchings), strict=True))
+    spread = np.sqrt((x**2).mean(axis=0))
+    scale = np.where(spread > 1e-6, spread, 1.0)
+    x = x / scale
     held = strength * np.eye(x.shape[1])
-    return np.asarray(np.linalg.solve(x.T @ x + held, x.T @ y), np.float64)
-
-
-def spread_of(branchings: Sequence[Branching]) -> Floats:
-    """Return by how much each feature differs between the places of one stone, (f,).
-
-    The root of its mean variance within a branching; 1 for one that never differs.
-    """
-    squares = np.concatenate([one.centred[0] for one in branchings]) ** 2
-    scale = np.sqrt(squares.mean(axis=0))
-    return np.where(scale > 1e-6, scale, 1.0)
+    return np.asarray(np.linalg.solve(x.T @ x + held, x.T @ y) / scale, np.float64)
 
 
 TRAINED_ON = ("brick", "fourier", "polygon")
@@ -153,9 +146,7 @@ def train(
             what = "no stone of these walls has a choice of places."
             cure = "Train on more walls, or of more stones."
             raise UsageError("E123", what, where="TrainSettings", cure=cure)
-        scale = spread_of(found)
-        weights = fitted(found, scale, settings.strength) / scale
-        model = ValueModel(tuple(weights.tolist()), {})
+        model = ValueModel(tuple(fitted(found, settings.strength).tolist()), {})
         done += 1
         walls += sum(len(one.merits) for one in new)
         merit = np.mean([one.merits.mean() for one in new])

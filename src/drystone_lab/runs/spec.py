@@ -102,10 +102,6 @@ class StoneSource:
         grey = _grey(path)
         return np.where(np.bincount(grey.ravel())[grey] < int(least), 0, grey).astype(np.uint32)
 
-    def as_dict(self) -> dict[str, Any]:
-        """Return what JSON writes."""
-        return asdict(self) | {"settings": dict(self.settings)}
-
 
 def _grey(path: Path) -> NDArray[Any]:
     return decode(path.read_bytes(), 10**7).values[..., 0]
@@ -165,11 +161,10 @@ class RunSpec:
 
     def as_dict(self) -> dict[str, Any]:
         """Return what JSON writes."""
-        return {
-            "source": self.source.as_dict(), "width": float(self.width),
-            "height": float(self.height), "scale": float(self.scale), "method": self.method,
-            "changes": dict(self.changes), "seed": self.seed,
-        }  # fmt: skip
+        about = asdict(self) | {"changes": dict(self.changes)}
+        about["source"]["settings"] = dict(self.source.settings)
+        # Equal runs are equal text.
+        return about | {name: float(about[name]) for name in ("width", "height", "scale")}
 
     def __str__(self) -> str:
         size = f"{self.width:g} x {self.height:g} px" if self.width and self.height else "own size"

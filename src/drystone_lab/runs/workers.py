@@ -5,14 +5,13 @@ from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, wait
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from functools import partial
-from importlib import import_module
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
-from typing import Any, Self, TypeVar
+from typing import Any, TypeVar
 
-from drystone.errors import DrystoneError, UsageError
+from drystone.errors import DrystoneError, UsageError, extra
 from drystone.search.processes import MUCH_MEMORY, process_pool
 from drystone_lab.runs.outcome import RunOutcome, RunWorker, died, execute, one_by_one
 from drystone_lab.runs.spec import RunSpec
@@ -34,12 +33,8 @@ def cluster_at_work(address: str, *, patience_s: float = 5.0) -> Iterator[RunWor
     the worker's machine, else from the folder that ``DRYSTONE_DATA`` names there.  A file of
     one's own is read here, and its stones are sent.
     """
-    try:
-        distributed = import_module("distributed")
-    except ImportError as error:
-        what = "Dask is not installed, and a cluster is asked for."
-        cure = "Install it with `pip install 'drystone[dask]'`, or use --jobs."
-        raise UsageError("E403", what, where=OPTION, cure=cure) from error
+    cure = ", or use --jobs"
+    distributed = extra("distributed", "is what asks a cluster", OPTION, "dask", "E403", cure)
     client = _client(distributed, address, patience_s)
     try:
         check_versions(client)
@@ -152,7 +147,7 @@ Process = Any
 """An executor of loky, which tells nothing of its types, with one process."""
 
 
-class Crew:
+class Crew(AbstractContextManager["Crew"]):
     """Processes with one worker each, so that it is known at which task one died.
 
     They end with the block, whatever they do then.  With `fresh` each task has a new process: what
@@ -162,9 +157,6 @@ class Crew:
     def __init__(self, jobs: int, *, fresh: bool = False) -> None:
         self.free = [_process() for _ in range(jobs)]
         self.fresh = fresh
-
-    def __enter__(self) -> Self:
-        return self
 
     def __exit__(self, *_: object) -> None:
         for process in self.free:
@@ -189,7 +181,10 @@ class Crew:
                 for future in wait(busy, return_when=FIRST_COMPLETED).done:
                     number, process = busy.pop(future)
                     error = future.exception()
-                    self.free.append(self._next(process, error))
+                    if self.fresh or isinstance(error, BrokenProcessPool):
+                        process.shutdown(wait=True, kill_workers=True)
+                        process = _process()
+                    self.free.append(process)
                     if error is None:
                         yield future.result()
                     else:
@@ -206,13 +201,6 @@ class Crew:
             if isinstance(error, BrokenProcessPool):
                 raise died(str(tasks[number]), "process") from error
             raise error
-
-    def _next(self, process: Process, error: BaseException | None) -> Process:
-        """Return the process, or another one in its place if it died or is used once."""
-        if not self.fresh and not isinstance(error, BrokenProcessPool):
-            return process
-        process.shutdown(wait=True, kill_workers=True)
-        return _process()
 
 
 def _process() -> Process:

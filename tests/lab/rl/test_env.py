@@ -290,4 +290,4 @@ except UsageError as error:
 
 def test_without_gymnasium_it_says_what_to_install_and_the_policy_needs_none():
     done = subprocess.run([sys.executable, "-c", CODE], capture_output=True, text=True, check=True)  # noqa: S603
-    assert done.stdout == "E150 Install it with `pip install 'drystone[rl]'`.\n"
+    assert done.stdout == 'E150 Install it with `pip install "drystone[rl]"`.\n'

@@ -94,19 +94,16 @@ def made(count, weights, noise=0.0):
 
 
 def test_fit_finds_the_weights_whatever_the_walls_are_worth_and_is_drawn_to_zero():
-    for count, noise, scale, off in (
-        (50, 0.0, (1, 1, 1), 1e-6), (2000, 1.0, (1, 1, 1), 0.06), (50, 0.0, (2.0, 0.5, 1), 1e-6)
-    ):  # fmt: skip
-        found = train.fitted(list(made(count, WEIGHTS, noise)), np.array(scale, float), 1e-9)
-        assert found / scale == pytest.approx(WEIGHTS, abs=off)
+    for count, noise, off in ((50, 0.0, 1e-6), (2000, 1.0, 0.06)):
+        found = train.fitted(list(made(count, WEIGHTS, noise)), 1e-9)
+        assert found == pytest.approx(WEIGHTS, abs=off)
     data = list(made(50, WEIGHTS))
-    assert train.fitted(data, np.ones(3), 1e9) == pytest.approx(np.zeros(3), abs=1e-4)
-    # 50 times 4 places less their mean: as many zeros halve them.
-    assert train.fitted(data, np.ones(3), 150.0)[1] == pytest.approx(-1.0, abs=0.2)
-
-
-def test_spread_is_within_branchings():
-    rows = np.array([[1.0, 5.0], [3.0, 5.0]])
-    two = [train.Branching(rows, np.zeros(2)), train.Branching(rows + 10.0, np.zeros(2))]
-    assert train.spread_of(two).tolist() == [1.0, 1.0]
-    assert train.spread_of([train.Branching(2 * rows, np.zeros(2))]).tolist() == [2.0, 1.0]
+    assert train.fitted(data, 1e9) == pytest.approx(np.zeros(3), abs=1e-4)
+    # 50 times 4 places: as many zeros halve them.
+    halved = train.fitted(data, 200.0)
+    assert halved[1] == pytest.approx(-1.0, abs=0.2)
+    # Of a feature in other units they are as many times less; of one that never differs 0.
+    other = [(one.features * (2.0, 0.5, 0.0) + 5.0 * k, one.merits) for k, one in enumerate(data)]
+    found = train.fitted([train.Branching(*one) for one in other], 200.0)
+    assert found[:2] / halved[:2] == pytest.approx([0.5, 2.0], abs=0.1)
+    assert found[2] == 0.0
