@@ -12,9 +12,8 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 
-from drystone.drawing import palette
-from drystone.drawing.canvas import add, draw, draw_block, fit_axes
-from drystone.drawing.drawing import GROUND, MARGIN, Drawing, Surface
+from drystone.drawing.canvas import add, draw_block, fit_axes
+from drystone.drawing.drawing import GROUND, MARGIN
 from drystone.drawing.drawing import ground as ground_below
 from drystone.drawing.outlines import label_regions
 from drystone.drawing.palette import CLUSTER_COLOURS, GREY, OUTLINE_COLOUR, WEDGE_COLOUR
@@ -32,14 +31,11 @@ LOOKS = (
 )  # fmt: skip
 """Colour and marker of a group, so that neither alone must be told apart; then round again."""
 
-PANEL_IN = (3.6, 2.7)
 SPREAD = 0.28
 """Half the width of a strip; groups are 1 apart."""
 
 GroupValues = Sequence[float | None]
 """A figure of several walls; None where a wall has none, which is left out."""
-
-Pairs = Sequence[tuple[float | None, float | None]]
 
 
 def name_axes(ax: Axes, across: str, up: str) -> None:
@@ -77,7 +73,7 @@ def group_panels(
     >>> [text.get_text() for text in sheet.axes[0].get_xticklabels()]
     ['rotation', 'wedge']
     """
-    sheet, panels = panel_sheet(len(figures), 4, PANEL_IN, title)
+    sheet, panels = panel_sheet(len(figures), 4, (3.6, 2.7), title)
     for ax, (name, groups) in zip(panels, figures.items(), strict=True):
         _draw_groups(ax, groups, (claims or {}).get(name, {}))
         ax.set_ylabel(name, fontsize=8)
@@ -117,7 +113,9 @@ def _draw_groups(ax: Axes, groups: Mapping[str, GroupValues], claims: Mapping[st
                   borderaxespad=0.2)  # fmt: skip
 
 
-def plot_two_figures(groups: Mapping[str, Pairs], *, across: str, up: str) -> Axes:
+def plot_two_figures(
+    groups: Mapping[str, Sequence[tuple[float | None, float | None]]], *, across: str, up: str
+) -> Axes:
     """Draw one figure over another, a point a wall; large ones are medians of groups."""
     ax = Figure(figsize=(5.2, 3.8)).add_subplot()
     for place, (name, pairs) in enumerate(groups.items()):
@@ -210,7 +208,8 @@ def plot_growth(
         if (law := fitted(points)) is not None:
             ends = [min(x), max(x)]
             words = f"exponent {law.exponent:.2f}"
-            ax.plot(ends, [law(end) for end in ends], color=colour, linewidth=1, label=words)
+            times = [law.factor * end**law.exponent for end in ends]
+            ax.plot(ends, times, color=colour, linewidth=1, label=words)
     for label, marker, size, seconds in claims:
         ax.plot([size], [seconds], color=OUTLINE_COLOUR, marker=marker, linestyle="",
                 markersize=6, label=label)  # fmt: skip
@@ -383,23 +382,3 @@ def plot_landscape(
         draw_block(ax, region.loops, f"block-{region.id}", fill=fills.get(region.id, fill),
                    edgecolor=edgecolor, linewidth=linewidth)  # fmt: skip
     ax.set_xlabel("working px", fontsize=7, labelpad=1)
-
-
-def masonry_panel(
-    title: str, labels: Labels, clusters: Mapping[int, int], units_per_px: float
-) -> Panel:
-    """Return the stones of a wall on the ground as a panel, coloured by cluster.
-
-    In source px, y up from the ground, which is below the last row of `labels` (row 0 at the top).
-    """
-    height, width = (units_per_px * size for size in labels.shape)
-    margin, depth = MARGIN * width, GROUND * max(height, 0.2 * width)
-    box = (-margin, -depth, width + margin, height + margin)
-    stones = []
-    for region in label_regions(labels):
-        cluster = clusters.get(region.id)
-        fill = palette.PLAIN_COLOUR if cluster is None else palette.cluster_colour(cluster)
-        loops = tuple(loop * units_per_px for loop in region.loops)
-        stones.append(Surface(f"stone-{region.id}", loops, fill))
-    drawing = Drawing((*ground_below(box), *stones), box, "px")
-    return Panel(title, wall_aspect(height / width), lambda ax: draw(drawing, ax))

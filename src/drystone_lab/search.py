@@ -3,7 +3,7 @@
 import csv
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import NamedTuple
@@ -23,7 +23,7 @@ from drystone.search.goal import FoundWall, possible_filling
 from drystone.search.packed import found_again
 from drystone.search.yard import Yard
 from drystone_lab import second_arrangement as second
-from drystone_lab.paired import median_difference, median_of
+from drystone_lab.cells import median_difference, median_of
 from drystone_lab.planned_walls import SETS, missing_data
 from drystone_lab.runs.spec import Changes, settings_of, told
 from drystone_lab.runs.workers import Crew
@@ -88,11 +88,8 @@ def _search(
         settings = replace(settings, search=replace(settings.search, passes=1))
     yard = Yard(first.workshop, settings, Deadline(end, clock))
     for progress in searching(FoundWall.of(first), yard, first.seed):
-        packed = progress.best
-        yield WayState(
-            progress.walls,
-            lambda packed=packed: found_again(packed, Yard(first.workshop, settings)),  # type: ignore[misc]
-        )
+        again = partial(found_again, progress.best, Yard(first.workshop, settings))
+        yield WayState(progress.walls, again)
 
 
 RESTARTS, WEDGED = "restarts", "restarts with wedges"
@@ -224,8 +221,7 @@ def append_results(path: Path, results: Iterable[tuple[SearchRun, SearchResult]]
             writer.writerow([*run, *(result[name] for name in (*FIGURES, *SPENT))])
 
 
-@dataclass(frozen=True)
-class SearchTask:
+class SearchTask(NamedTuple):
     """What one process does: a method looks for a wall, and is asked at several times."""
 
     target: Target

@@ -21,7 +21,7 @@ from drystone.statics.flow.nonassociative import nonassociative_load
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.loads import Loads, point_load, weight
 from drystone.statics.model import RigidBlockModel
-from drystone_lab.reproduce.cells import rounded
+from drystone_lab.cells import rounded
 from drystone_lab.table import BENCH, BenchSettings, Rows, Table, worded
 
 GRAVITY = 9.81

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from math import log
 from pathlib import Path
 from statistics import fmean, median
+from typing import NamedTuple
 
 import numpy as np
 
@@ -92,16 +93,11 @@ def planned(
     return TimedWall(site, median(p.total("preparation") for p in profiles), steps)
 
 
-@dataclass(frozen=True)
-class PowerLaw:
+class PowerLaw(NamedTuple):
     """y = factor * x ** exponent."""
 
     factor: float
     exponent: float
-
-    def __call__(self, x: float) -> float:
-        """Return y."""
-        return float(self.factor * x**self.exponent)
 
 
 def fitted(points: Sequence[tuple[float, float]]) -> PowerLaw | None:

@@ -1,5 +1,6 @@
 """Charts of many walls, of times, of predictions; and walls on one sheet."""
 
+from dataclasses import replace
 from statistics import median
 
 import numpy as np
@@ -11,6 +12,8 @@ from drystone.drawing.palette import PLAIN_COLOUR, cluster_colour
 from drystone.planner.profile import StepTime
 from drystone_lab import pictures
 from drystone_lab.pictures import Prediction, group_panels
+from drystone_lab.reproduce.masons import TracedWall
+from drystone_lab.walls import PR
 from tests.drawing.examples import CLUSTERS, WEDGE, wall
 
 VALUES = {"both": [0.8, 0.7, 0.9, 0.75, 0.72, 0.71], "none": [0.5, None, 0.4], "empty": [None]}
@@ -153,7 +156,7 @@ def test_every_wall_is_drawn_whole_under_its_title():
 
 def test_masonry_is_coloured_by_cluster_and_in_source_px():
     labels = np.kron([[1, 2], [7, 7]], np.ones((4, 10), int)).astype(np.uint32)
-    panel = pictures.masonry_panel("masons", labels, {1: 2, 7: 1}, 5.0)
+    panel = TracedWall(replace(PR, scale=0.2), labels, {1: 2, 7: 1}).panel("masons", labels)
     (ax,) = pictures.sheet_of([panel], 1).axes
     colours = {p.get_gid(): p.get_facecolor() for p in ax.patches if p.get_gid() != "ground"}
     expected = {"stone-1": cluster_colour(2), "stone-2": PLAIN_COLOUR, "stone-7": cluster_colour(1)}

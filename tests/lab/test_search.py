@@ -180,7 +180,7 @@ def test_what_the_table_holds_is_not_done_again_and_ways_take_turns(done, tmp_pa
 def test_settings_are_what_a_way_goes_by():
     task = search.SearchTask(BRICKS, "restarts", 1, (1e-6,), None)
     _, (plain,) = search.do(task)
-    _, (halved,) = search.do(replace(task, changes=(("goal.filling", 0.0),)))
+    _, (halved,) = search.do(task._replace(changes=(("goal.filling", 0.0),)))
     lost = method_settings("best").goal.filling * plain["F_SF"] / plain["possible F_SF"]
     assert halved["merit"] == pytest.approx(plain["merit"] - lost)
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.stats import binom
 
-from drystone_lab.paired import median_difference
+from drystone_lab.cells import median_difference
 from drystone_lab.table import Table
 
 

@@ -6,12 +6,13 @@ from dataclasses import dataclass, replace
 from itertools import combinations, compress, groupby, zip_longest
 from math import fsum, sqrt
 from statistics import fmean, stdev
+from typing import NamedTuple
 
 import numpy as np
 from matplotlib.figure import Figure
 from scipy.stats import rankdata, wilcoxon
 
-from drystone_lab.paired import COVERED, LOWER_IS_BETTER, interval_of, median_of
+from drystone_lab.cells import LEVEL, LOWER_IS_BETTER, differences, interval_of, median_of
 from drystone_lab.pictures import LOOKS, name_axes, panel_sheet
 from drystone_lab.public.store import NOT_SHAKEN, PLACED, SHAKE, KeptRun
 from drystone_lab.table import BENCH, Cell, Table, worded
@@ -75,14 +76,11 @@ def _comparable(result: KeptRun) -> tuple[float | None, ...]:
     return tuple(None if value is None else round(value, DECIMALS) for value in figures)
 
 
-UNITS = {PLACED: "placed share", SHAKE: "PGA, g"}
-"""Figures that are written otherwise in tables."""
-
-
 def comparison(results: BenchResults) -> tuple[Table, ...]:
     """Return the figures of every method on every wall, on all walls, and the times."""
     figures, words = results.figures, BENCH["public"]
-    named = ((UNITS.get(figure, figure), figure) for figure in figures)
+    units = {PLACED: "placed share", SHAKE: "PGA, g"}
+    named = ((units.get(figure, figure), figure) for figure in figures)
     titles = [text for name, short in named for text in (name, f"±{short}", f"best {short}")]
     columns = {"<figures>": titles}
     each = {
@@ -145,10 +143,6 @@ def _rounded(value: float, digits: int = 4) -> float:
     return float(f"{value:.{digits}g}")
 
 
-LEVEL = 1 - COVERED
-"""Of significance."""
-
-
 @dataclass(frozen=True)
 class MethodPair:
     """What one method has more than another, of one figure."""
@@ -176,14 +170,13 @@ def compared(
     >>> found.mean, found.low, found.high, found.won, found.p, found.left_out
     (2.0, 2.0, 2.0, 1.0, 0.25, 1)
     """
-    pairs = list(zip(first, second, strict=True))
-    found = np.array([round(a - b, DECIMALS) for a, b in pairs if a is not None and b is not None])
+    found = np.array([round(each, DECIMALS) for each in differences(first, second)])
     if not found.size:
         return None
     low, high = interval_of(found, np.mean)
     better = found if higher else -found
     won = float(np.mean((better > 0) + 0.5 * (better == 0)))
-    left_out = len(pairs) - found.size
+    left_out = len(first) - found.size
     mean = float(found.mean())
     return MethodPair(found.size, left_out, mean, low, high, won, _signed_rank(found))
 
@@ -299,8 +292,7 @@ def _signed_rank(differences: np.ndarray) -> float:
     return min(1.0, 2 * float(chances[: min(above, below) + 1].sum()))
 
 
-@dataclass(frozen=True)
-class Medians:
+class Medians(NamedTuple):
     """What a method came to in a version."""
 
     suite: str  # Suite and its version, such as ``"masons/1"``
@@ -377,10 +369,9 @@ def drawn_history(medians: Sequence[Medians]) -> Figure:
         ax.set_xticks(range(len(versions)), versions)
         ax.set_xlim(-0.4, len(versions) - 0.6)
         name_axes(ax, "version", figure)
-    handles, labels = panels[0].get_legend_handles_labels()
     sheet.legend(
-        handles, labels, fontsize=7, edgecolor="none", loc="outside lower center",
-        ncols=min(len(labels), 8),
+        *panels[0].get_legend_handles_labels(), fontsize=7, edgecolor="none",
+        loc="outside lower center", ncols=min(len(methods), 8),
     )  # fmt: skip
     return sheet
 

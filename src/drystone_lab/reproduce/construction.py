@@ -10,6 +10,7 @@ from drystone import indices
 from drystone.kernels.lowering import Positions
 from drystone.kernels.raster import Mask
 from drystone.model.landscape import Box, Landscape, view_box
+from drystone.model.placement import Placement
 from drystone.model.pose import PosedStone
 from drystone.model.wall import Wall
 from drystone.placement.best import best_spots
@@ -124,8 +125,7 @@ class RestingPlace:
     def pixels(self) -> Mask:
         """The stone in an image as large as the landscape."""
         image = np.zeros(self.moment.wall.labels.shape, bool)
-        height, width = self.posed.mask.shape
-        image[self.row : self.row + height, self.col : self.col + width] = self.posed.mask
+        image[Placement(self.posed, self.row, self.col).window] = self.posed.mask
         return image
 
 

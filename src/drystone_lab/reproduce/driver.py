@@ -6,11 +6,10 @@ import platform
 import re
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from PIL import PngImagePlugin
@@ -27,8 +26,6 @@ from drystone_lab.reproduce.items import ITEMS, item_named
 from drystone_lab.runs.outcome import Runner, RunWorker, absent_data, one_by_one
 from drystone_lab.runs.spec import published
 from drystone_lab.table import Table, written
-
-Record = Mapping[str, Any]
 
 
 def heading(name: str, title: str) -> str:
@@ -57,7 +54,7 @@ def part(text: str) -> str:
     return f"Appendix {number}" if number.startswith("B") else f"§{number}"
 
 
-def lead(records: Sequence[Record], total: int) -> str:
+def lead(records: Sequence[Mapping[str, Any]], total: int) -> str:
     """Say how much was made, with what, when, on what kind of machine."""
     if not records:
         return f"None of {total} was made so far."
@@ -73,7 +70,7 @@ def lead(records: Sequence[Record], total: int) -> str:
     )
 
 
-def made_rows(records: Sequence[Record]) -> tuple[tuple[str, str], ...]:
+def made_rows(records: Sequence[Mapping[str, Any]]) -> tuple[tuple[str, str], ...]:
     """Return what items were made with, by name; different values side by side."""
     if not records:
         return ()
@@ -117,7 +114,10 @@ SHOWN = 0.624
 
 
 def write_page(
-    path: Path, records: Sequence[Record], misses: Mapping[str, Record], order: Sequence[str]
+    path: Path,
+    records: Sequence[Mapping[str, Any]],
+    misses: Mapping[str, Mapping[str, Any]],
+    order: Sequence[str],
 ) -> Path:
     """Write the report of everything that was made; pictures and tables are linked beside it.
 
@@ -139,7 +139,7 @@ def write_page(
     )
 
 
-def write_item_page(path: Path, record: Record) -> Path:
+def write_item_page(path: Path, record: Mapping[str, Any]) -> Path:
     """Write the page of one item, into the folder of its files."""
     return _write(
         path,
@@ -234,17 +234,14 @@ class ReportFolder:
     def __init__(self, path: Path) -> None:
         self.path = path
         path.mkdir(parents=True, exist_ok=True)
-        if _read(path / MARK, MARK_SCHEMA) is None and has_files(path):
+        mark = _read(path / MARK, MARK_SCHEMA)
+        if mark is None and has_files(path):
             what = "the folder is not empty, and it is none that `drystone reproduce` wrote."
             cure = "Choose another with -o; nothing in it was touched."
             raise UsageError("E129", what, where=str(path), cure=cure)
-        self._write_misses(self.misses)
-
-    @property
-    def misses(self) -> dict[str, dict[str, str]]:
-        """Items that could not be made when they were last asked for: why, by name."""
-        mark = _read(self.path / MARK, MARK_SCHEMA)
-        return {} if mark is None else mark["misses"]
+        # Items that could not be made when they were last asked for: why, by name.
+        self.misses: dict[str, dict[str, str]] = {} if mark is None else mark["misses"]
+        self._write_misses()
 
     def record(self, name: str) -> dict[str, Any] | None:
         """Return what the JSON of an item says; None when it was not made, or a file is gone."""
@@ -287,24 +284,24 @@ class ReportFolder:
 
     def miss(self, name: str, item: PaperItem, error: DrystoneError | None) -> None:
         """Note why an item cannot be made, or without an error that it is there."""
-        about = {key: item.words[key] for key in ("title", "section")} | {"error": str(error)}
-        misses = {**self.misses, name: about}
         if error is None:
-            del misses[name]
-        self._write_misses(misses)
+            self.misses.pop(name, None)
+        else:
+            about = {key: item.words[key] for key in ("title", "section")}
+            self.misses[name] = about | {"error": str(error)}
+        self._write_misses()
 
-    def _write_misses(self, misses: Mapping[str, Mapping[str, str]]) -> None:
-        text = json.dumps({"schema": MARK_SCHEMA, "misses": misses}, ensure_ascii=False, indent=1)
+    def _write_misses(self) -> None:
+        mark = {"schema": MARK_SCHEMA, "misses": self.misses}
+        text = json.dumps(mark, ensure_ascii=False, indent=1)
         write_whole(self.path / MARK, text.encode())
 
 
 def _read(path: Path, schema: str) -> dict[str, Any] | None:
     """Return the contents of one of our files; None when it is not there, or is none."""
-    if not path.is_file():
-        return None
     try:
         data = json.loads(path.read_text(encoding="utf-8"))
-    except ValueError:  # cut short or of another program: as good as not there
+    except (OSError, ValueError):  # cut short or of another program: as good as not there
         return None
     return data if isinstance(data, dict) and data.get("schema") == schema else None
 
@@ -312,8 +309,7 @@ def _read(path: Path, schema: str) -> dict[str, Any] | None:
 EVERY_S = 2.0  # walls are told of no oftener than that
 
 
-@dataclass(frozen=True, eq=False)
-class MadeItem:
+class MadeItem(NamedTuple):
     """What became of an item."""
 
     name: str

@@ -14,8 +14,8 @@ from drystone.drawing.palette import OUTLINE_COLOUR, cluster_colour
 from drystone.drawing.pictures.stones import plot_stones
 from drystone.model.stone import StoneSet
 from drystone.poses import PoseBook
+from drystone_lab.cells import rounded
 from drystone_lab.pictures import name_axes
-from drystone_lab.reproduce.cells import rounded
 from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem
 from drystone_lab.table import Rows
 from drystone_lab.walls import MASONS, PR, Target

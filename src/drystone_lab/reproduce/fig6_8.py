@@ -25,8 +25,8 @@ from drystone.model.landscape import Box
 from drystone.model.pose import PosedStone
 from drystone.model.wall import Labels
 from drystone.stabilise.stabilise import falls_to
+from drystone_lab.cells import rounded
 from drystone_lab.pictures import plot_landscape
-from drystone_lab.reproduce.cells import rounded
 from drystone_lab.reproduce.construction import Moment, RestingPlace, amid_course, construction
 from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem
 from drystone_lab.table import Cell, Rows
@@ -89,13 +89,11 @@ def _id(place: RestingPlace, box: Box) -> int:
 
 def _name_stones(ax: Axes, place: RestingPlace) -> None:
     below1, below2 = place.below
-    told = {
+    named = {
         "left neighbour": place.neighbour, "below1": below1, "below2": below2, "stone": place.box,
     }  # fmt: skip
-    for name, box in told.items():
-        if box is None:
-            continue
-        left, right, bottom, top = box
+    told = {name: box for name, box in named.items() if box is not None}
+    for name, (left, right, bottom, top) in told.items():
         ax.text(
             (left + right) / 2, (bottom + top) / 2, name, size=7, ha="center", va="center",
             zorder=6, gid="name", path_effects=[withStroke(linewidth=1.5, foreground="white")],
@@ -133,52 +131,33 @@ def recounted(place: RestingPlace, name: str) -> float | None:
 
     SF is that of the working pixels; the planner's is that of the source image.
     """
-    if name == "SF":
-        return float(place.posed.mask.mean())
-    labels, stone = place.moment.wall.labels, place.pixels
-    if name == "LFR":
-        swept = labels[swept_pixels(place.moment.landscape, place.posed, place.row, place.col)] > 0
-        return float(swept.mean()) if swept.size else 1.0
-    if name == "GDS":
-        return _dice(labels, stone)
-    return {"NHR": _height, "IWR": _joints, "IS": _slope}[name](place, labels, stone)
-
-
-def _dice(labels: Labels, stone: Mask) -> float:
-    built = np.zeros(labels.shape, bool)
-    filled = np.flatnonzero((labels > 0).any(axis=1))
-    built[filled[0] if filled.size else len(built) :] = True
-    area = np.count_nonzero(stone)
-    inside = np.count_nonzero(stone & built)
-    return float(np.count_nonzero(built) / area * inside / np.count_nonzero(stone | built))
-
-
-def _height(place: RestingPlace, labels: Labels, stone: Mask) -> float | None:
-    if place.neighbour is None:
-        return None
-    top, other = _rows(stone), _rows(labels == _id(place, place.neighbour))
-    return abs(top[0] - other[0]) / (top[1] - top[0])
-
-
-def _joints(place: RestingPlace, labels: Labels, stone: Mask) -> float | None:
-    below1, below2 = place.below
-    if below1 is None or below2 is None:
-        return None
-    left, right = _rows(stone.T)
-    start1, end1 = _rows((labels == _id(place, below1)).T)
-    start2, end2 = _rows((labels == _id(place, below2)).T)
-    terms = (abs(left - end1) / (end1 - start1), abs(right - start2) / (end2 - start2))
-    return sum(min(1.0, term) for term in terms) / 2
-
-
-def _slope(place: RestingPlace, labels: Labels, stone: Mask) -> float | None:
-    peaks = peak_columns(place.posed)
-    if peaks is None or peaks[0] == peaks[1]:
-        return None
-    left, right = (place.col + column for column in peaks)
-    fall = int(np.argmax(stone[:, right])) - int(np.argmax(stone[:, left]))
-    side = np.sign(place.col + place.posed.anchor[0] - labels.shape[1] / 2)
-    return float(np.clip(fall / (left - right) * side, -1.0, 1.0))
+    posed, labels, stone = place.posed, place.moment.wall.labels, place.pixels
+    found: float | None = None
+    match name:
+        case "SF":
+            found = posed.mask.mean()
+        case "LFR":
+            swept = labels[swept_pixels(place.moment.landscape, posed, place.row, place.col)]
+            found = (swept > 0).mean() if swept.size else 1.0
+        case "GDS":
+            built = np.zeros(labels.shape, bool)
+            built[np.maximum.accumulate(labels.any(axis=1))] = True
+            inside, both = np.count_nonzero(stone & built), np.count_nonzero(stone | built)
+            found = np.count_nonzero(built) / np.count_nonzero(stone) * inside / both
+        case "NHR" if place.neighbour is not None:
+            (top, foot), (other, _) = _rows(stone), _rows(labels == _id(place, place.neighbour))
+            found = abs(top - other) / (foot - top)
+        case "IWR" if len(below := [box for box in place.below if box is not None]) == 2:
+            left, right = _rows(stone.T)
+            (start1, end1), (start2, end2) = (_rows((labels == _id(place, b)).T) for b in below)
+            terms = (abs(left - end1) / (end1 - start1), abs(right - start2) / (end2 - start2))
+            found = sum(min(1.0, term) for term in terms) / 2
+        case "IS" if len({*(peaks := peak_columns(posed) or ())}) == 2:
+            left, right = (place.col + column for column in peaks)
+            fall = int(np.argmax(stone[:, right])) - int(np.argmax(stone[:, left]))
+            side = np.sign(place.col + posed.anchor[0] - labels.shape[1] / 2)
+            found = np.clip(fall / (left - right) * side, -1.0, 1.0)
+    return None if found is None else float(found)
 
 
 def _rows(pixels: Mask) -> tuple[int, int]:
@@ -205,7 +184,6 @@ def resting_places(moment: Moment) -> tuple[RestingPlace, ...]:
 class MomentPlaces:
     """A moment of a run, where stones that are left would rest, and a stone amid a course."""
 
-    wall: Target
     place: RestingPlace
     all: tuple[RestingPlace, ...]
 
@@ -232,7 +210,7 @@ def _cells(place: RestingPlace, name: str) -> tuple[Cell, ...]:
 def places(context: Context, wall: Target = PR) -> MomentPlaces:
     """Find the places of all stones that are left at a moment of a run."""
     place = amid_course(construction(context, wall))
-    return MomentPlaces(wall, place, resting_places(place.moment))
+    return MomentPlaces(place, resting_places(place.moment))
 
 
 def _ranges(found: MomentPlaces) -> Rows:
@@ -344,34 +322,30 @@ def position_maps(occupied: Mask, mask: Mask) -> tuple[Mask, Mask]:
 
 
 @dataclass(frozen=True, eq=False)
-class PositionTrial:
+class PositionTrial(RestingPlace):
     """A stone on a landscape, where the rule of placement puts it."""
-
-    wall: Target
-    place: RestingPlace
 
     @cached_property
     def maps(self) -> tuple[Mask, Mask, Mask]:
         """The paper's positions: free, floating, and touching, the difference of both."""
-        free, floating = position_maps(self.place.moment.wall.occupied, self.place.posed.mask)
+        free, floating = position_maps(self.moment.wall.occupied, self.posed.mask)
         return free, floating, free & ~floating
 
     @property
     def built(self) -> int:
         """Stones of the landscape."""
-        return len(self.place.moment.wall.placements)
+        return len(self.moment.wall.placements)
 
     @cached_property
     def resting(self) -> Positions:
         """Where it rests on something from below."""
-        return self.place.moment.positions(self.place.posed)
+        return self.moment.positions(self.posed)
 
-    def values(self, positions: Positions) -> NDArray[np.float64]:
+    def merits(self, positions: Positions) -> NDArray[np.float64]:
         """Return Eq. 12 at some positions."""
-        moment, posed = self.place.moment, self.place.posed
-        landscape, beta = moment.landscape, moment.settings.placement.beta
-        eq12 = Eq12(landscape.built_height_px, posed.anchor[0], beta)
-        return eq12_merits(positions, posed.silhouette, landscape.rays, eq12)
+        landscape, beta = self.moment.landscape, self.moment.settings.placement.beta
+        eq12 = Eq12(landscape.built_height_px, self.posed.anchor[0], beta)
+        return eq12_merits(positions, self.posed.silhouette, landscape.rays, eq12)
 
 
 def trial(context: Context, wall: Target = PR) -> PositionTrial:
@@ -380,29 +354,29 @@ def trial(context: Context, wall: Target = PR) -> PositionTrial:
     found = place.moment.trial(place.posed.stone.id)
     if found is None:
         raise RuntimeError("a stone of the run fits nowhere where it was placed")
-    return PositionTrial(wall, RestingPlace(place.moment, *found))
+    return PositionTrial(place.moment, *found)
 
 
 def _positions(found: PositionTrial) -> Rows:
-    place, (free, floating, touching) = found.place, found.maps
+    free, floating, touching = found.maps
     yield "all inside the wall", free.size, None, None, None
     yield "no overlap (red)", int(free.sum()), None, None, None
     yield "floating (blue)", int(floating.sum()), None, None, None
     for name, positions in (
         ("touching: the difference (pink)", np.argwhere(touching).astype(np.int64)),
         ("resting on something from below", found.resting),
-        ("chosen", np.array([(place.row, place.col)], np.int64)),
+        ("chosen", np.array([(found.row, found.col)], np.int64)),
     ):
         # The place of the largest value; of equal ones the lower, then the left one.
-        values = found.values(positions)
+        values = found.merits(positions)
         best = np.lexsort((positions[:, 1], -positions[:, 0], -np.round(values, 12)))[0]
         row, col = positions[best].tolist()
-        bottom = place.moment.landscape.height_px - row - place.posed.height_px
+        bottom = found.moment.landscape.height_px - row - found.posed.height_px
         yield name, len(positions), col, bottom, round(float(values[best]), 4)
 
 
 def _drawn(found: PositionTrial) -> ItemFigure:
-    place, resting, (free, floating, touching) = found.place, found.resting, found.maps
+    resting, (free, floating, touching) = found.resting, found.maps
     figure = Figure(figsize=(7.2, 7.05), layout="constrained")
     first, second, third = figure.subplots(3, 1)
     bearing = np.zeros_like(free)
@@ -416,8 +390,8 @@ def _drawn(found: PositionTrial) -> ItemFigure:
         ("resting on something from below", "#000000", bearing),
     )
     for ax, layers in ((first, apart), (second, near)):
-        plot_position_layers(ax, place.moment.wall.labels, place.posed, layers)
-    plot_position_values(third, place, resting, found.values(resting))
+        plot_position_layers(ax, found.moment.wall.labels, found.posed, layers)
+    plot_position_values(third, found, resting, found.merits(resting))
     return ItemFigure("fig8", figure)
 
 

@@ -1,7 +1,8 @@
 """Fig. 9: stones that fall where they are tried, turned and wedged (§3.7)."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -10,10 +11,10 @@ from matplotlib.patches import FancyArrowPatch, Rectangle
 from matplotlib.patheffects import withStroke
 
 from drystone.drawing.canvas import draw_block, fit_axes
-from drystone.drawing.outlines import Bounds, Loop, label_regions
+from drystone.drawing.outlines import Bounds, Loop, label_regions, regions_box
 from drystone.drawing.palette import GREY, OUTLINE_COLOUR, WEDGE_COLOUR
 from drystone.kernels.raster import Mask
-from drystone.model.placement import Wedge
+from drystone.model.placement import Placement, Wedge
 from drystone.model.wall import Labels
 from drystone.stabilise import stabilise
 from drystone.stabilise.stabilise import Pose, Support
@@ -28,8 +29,7 @@ LINE, MASS = "#d55e00", "#000000"
 PointXY = tuple[float, float]
 
 
-@dataclass(frozen=True, eq=False)
-class SupportedStone:
+class SupportedStone(NamedTuple):
     """A stone where it is."""
 
     pose: Pose  # The stone and the row and column of its mask
@@ -41,8 +41,7 @@ class SupportedStone:
     @property
     def mass(self) -> PointXY:
         """Centre of mass C."""
-        posed, row, col = self.pose
-        return col + posed.anchor[0], self.height_px - row - posed.height_px + posed.anchor[1]
+        return Placement(*self.pose).centroid(self.height_px)
 
     @property
     def ends(self) -> tuple[PointXY, PointXY]:
@@ -95,8 +94,7 @@ def plot_standing(
     if standing.wedges:
         # The supported side, which wedging leaves alone (grey in Fig. 9c)
         first = before or standing
-        points = np.concatenate(first.loops)
-        (left, bottom), (right, top) = points.min(axis=0), points.max(axis=0)
+        left, bottom, right, top = regions_box([first.loops])
         x_a = first.ends[0][0]
         start, end = (left, x_a) if first.falls > 0 else (x_a, right)
         ax.add_patch(Rectangle((start, bottom), end - start, top - bottom, facecolor=GREY,
@@ -142,8 +140,7 @@ def _write(ax: Axes, text: str, at: PointXY, offset: PointXY) -> None:
 
 
 def _draw_turn(ax: Axes, standing: SupportedStone) -> None:
-    points = np.concatenate(standing.loops)
-    (left, _), (right, top) = points.min(axis=0), points.max(axis=0)
+    left, _, right, top = regions_box([standing.loops])
     middle, reach = (left + right) / 2, 0.25 * (right - left)
     side = standing.falls
     arrow = FancyArrowPatch(
@@ -154,8 +151,7 @@ def _draw_turn(ax: Axes, standing: SupportedStone) -> None:
     ax.add_patch(arrow)
 
 
-@dataclass(frozen=True, eq=False)
-class Unstable:
+class Unstable(NamedTuple):
     """A stone that falls where the rule of placement puts it."""
 
     moment: Moment
@@ -203,11 +199,9 @@ def _standing(moment: Moment, pose: Pose, wedges: tuple[Wedge, ...] = ()) -> Sup
     return SupportedStone(pose, support, falls, wedges, len(scene))
 
 
-@dataclass(frozen=True, eq=False)
-class Falls:
+class Falls(NamedTuple):
     """What was tried before each step of a run, what falls there, and the cases that are drawn."""
 
-    wall: Target
     trials: int  # Those that had a position
     unstable: tuple[Unstable, ...]
 
@@ -221,8 +215,8 @@ class Falls:
         wedged = [one for one in self.unstable if one.wedged is not None]
         turned = [one for one in wedged if one.turned is not None]
         stuck = [one for one in wedged if one.turned is None]
-        found = _largest(turned, lambda one: abs(one.turn_deg or 0.0)), _largest(stuck, wedge_area)
-        return tuple(one for one in found if one is not None)
+        most = _largest(turned, lambda one: abs(one.turn_deg or 0.0))
+        return (*most, *_largest(stuck, wedge_area))
 
 
 def falls(context: Context, wall: Target = PR) -> Falls:
@@ -237,17 +231,17 @@ def falls(context: Context, wall: Target = PR) -> Falls:
             standing = _standing(moment, trial)
             if standing is not None and standing.falls:
                 found.append(_treated(moment, standing))
-    return Falls(wall, count, tuple(found))
+    return Falls(count, tuple(found))
 
 
-def _largest(cases: Sequence[Unstable], size: Callable[[Unstable], float]) -> Unstable | None:
-    """Return the largest case whose support is wide enough to see AB, if there is one."""
+def _largest(cases: Sequence[Unstable], size: Callable[[Unstable], float]) -> Sequence[Unstable]:
+    """Return the largest case, if any: of those whose support is wide enough to see AB."""
     wide = [
         one for one in cases
         if one.trial.support.right_x - one.trial.support.left_x
         >= 0.1 * one.trial.pose[0].width_px
     ]  # fmt: skip
-    return max(wide or cases, key=size, default=None)
+    return sorted(wide or cases, key=size, reverse=True)[:1]
 
 
 def _counts(found: Falls) -> Rows:
@@ -286,8 +280,7 @@ def _picture(found: Falls) -> ItemFigure:
     panels = figure.subplots(len(found.shown), 3, squeeze=False)
     for axes, case in zip(panels.tolist(), found.shown, strict=True):
         stands = [one for one in (case.trial, case.turned, case.wedged) if one is not None]
-        points = np.concatenate([loop for one in stands for loop in one.loops])
-        (left, bottom), (right, top) = points.min(axis=0).tolist(), points.max(axis=0).tolist()
+        left, bottom, right, top = regions_box(one.loops for one in stands)
         window = left - 12.0, max(bottom - 12.0, -2.0), right + 12.0, top + 6.0
         labels = case.moment.wall.labels
         title = f"stone {case.trial.pose[0].stone.id} before step {case.moment.number}: falls"

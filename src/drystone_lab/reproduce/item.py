@@ -2,6 +2,9 @@
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
+from itertools import groupby
+from operator import attrgetter
 from pathlib import Path
 from pkgutil import resolve_name
 from types import MappingProxyType
@@ -11,24 +14,20 @@ from matplotlib.figure import Figure, SubFigure
 
 from drystone.model.wall import Wall
 from drystone.selection.policies.table1 import MARKS
-from drystone_lab import timed_walls
-from drystone_lab.paired import median_of
+from drystone_lab import cells, timed_walls
 from drystone_lab.pictures import TitledWall, group_panels, plot_walls
-from drystone_lab.reproduce import cells
 from drystone_lab.runs.outcome import Runner, RunOutcome
 from drystone_lab.runs.spec import Changes, RunSpec
 from drystone_lab.table import Cell, Rows, Table, worded
 from drystone_lab.walls import Target, coarser
 
-COLUMN_SETS: Mapping[str, tuple[str, ...]] = MappingProxyType(
-    {
-        "<metrics>": cells.METRICS, "<summary>": cells.COLUMNS, "<wins>": cells.WINS,
-        "<policies>": tuple(MARKS), "<parts>": timed_walls.COLUMNS,
-    }
-)  # fmt: skip
+COLUMN_SETS: Mapping[str, tuple[str, ...]] = {
+    "<metrics>": cells.METRICS, "<summary>": cells.COLUMNS, "<wins>": cells.WINS,
+    "<policies>": tuple(MARKS), "<parts>": timed_walls.COLUMNS,
+}  # fmt: skip
 """Columns that several tables have, by their name in ``paper.toml``."""
 
-VERDICTS = MappingProxyType({True: "Agrees", False: "Differs", None: "Cannot be told"})
+VERDICTS = {True: "Agrees", False: "Differs", None: "Cannot be told"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,8 +66,7 @@ class ItemFigure(NamedTuple):
     about: Any = None
 
 
-@dataclass(frozen=True, eq=False)
-class Output:
+class Output(NamedTuple):
     """What an item came to."""
 
     # What we found, in sentences whose numbers are computed, and why it differs; a paragraph each
@@ -91,51 +89,37 @@ class Claimed:
         self.values = values  # What both are formatted with
 
 
-@dataclass(frozen=True, kw_only=True)
-class Study:
-    """What is built."""
+def worded_study(
+    context: Context,
+    *,
+    walls: Sequence[str],
+    ways: Mapping[str, Mapping[str, Any]] = MappingProxyType({"variant": {}}),
+    seeds: int = 20,
+    quick_walls: Sequence[str] = (),
+    quick_seeds: int = 3,
+) -> "StudyWalls":
+    """Build the walls of a study as ``paper.toml`` words it, all from so many seeds.
 
-    walls: tuple[Target, ...]  # The sets
-    ways: Mapping[str, Changes]  # Settings that replace the paper's, by name of the way
-    seeds: int = 20  # seeds, quick_seeds: How many, the same for all; in the quick version
-    quick_seeds: int = 3
-    quick_walls: tuple[Target, ...] = ()  # Of the quick version; empty for the same
-
-    @classmethod
-    def worded(
-        cls,
-        *,
-        walls: Sequence[str],
-        ways: Mapping[str, Mapping[str, Any]] = MappingProxyType({"variant": {}}),
-        quick_walls: Sequence[str] = (),
-        **seeds: int,
-    ) -> "Study":
-        """Return the study of words in ``paper.toml``.
-
-        Walls are constants of the lab, coarser ones with their scale.
-
-        >>> [wall.scale for wall in Study.worded(walls=["walls.R", "walls.MASONS at 0.25"]).walls]
-        [0.2, 0.2, 0.25, 0.25]
-        """
-        changes = {name: tuple(values.items()) for name, values in ways.items()}
-        full, quick = (tuple(_targets(names)) for names in (walls, quick_walls))
-        return cls(walls=full, ways=changes, quick_walls=quick, **seeds)
-
-    def __call__(self, context: Context) -> "StudyWalls":
-        """Build the walls."""
-        walls = (context.quick and self.quick_walls) or self.walls
-        walls = tuple(wall.here(context.data) for wall in walls)
-        count = self.quick_seeds if context.quick else self.seeds
-        seeds = range(context.seed, context.seed + count)
-        return StudyWalls.built(context, walls, self.ways, seeds)
+    `ways` are settings that replace the paper's, by name of the way; without `quick_walls` the
+    quick version has the same walls.
+    """
+    if context.quick:
+        walls, seeds = quick_walls or walls, quick_seeds
+    targets = [wall.here(context.data) for name in walls for wall in targets_named(name)]
+    changes = {name: tuple(settings.items()) for name, settings in ways.items()}
+    return StudyWalls.built(context, targets, changes, range(context.seed, context.seed + seeds))
 
 
-def _targets(names: Sequence[str]) -> Iterator[Target]:
-    for each in names:
-        name, _, scale = each.partition(" at ")
-        found = resolve_name(f"drystone_lab.{name}")
-        for wall in (found,) if isinstance(found, Target) else found:
-            yield coarser(wall, float(scale)) if scale else wall
+def targets_named(name: str) -> Iterator[Target]:
+    """Yield walls that are constants of the lab, coarser ones with their scale.
+
+    >>> [wall.scale for wall in targets_named("walls.MASONS at 0.25")]
+    [0.2, 0.25, 0.25]
+    """
+    name, _, scale = name.partition(" at ")
+    found = resolve_name(f"drystone_lab.{name}")
+    for wall in (found,) if isinstance(found, Target) else found:
+        yield coarser(wall, float(scale)) if scale else wall
 
 
 @dataclass(frozen=True, eq=False)
@@ -161,7 +145,7 @@ class Trials:
 
     def median(self, figure: str) -> float | None:
         """Return the median of a figure over the walls that have it; None when none has."""
-        return median_of(self.values(figure))
+        return cells.median_of(self.values(figure))
 
     @property
     def whole(self) -> int:
@@ -172,10 +156,9 @@ class Trials:
         """Return what is told of all walls: of the set, medians of figures, or their summary."""
         if name == "<summary>":
             return cells.summary(self.outcomes)
-        if name in ("way", "whole"):
-            return (getattr(self, name),)
-        if hasattr(self.wall, name):
-            return (getattr(self.wall, name),)
+        for about in (self, self.wall):
+            if hasattr(about, name):
+                return (getattr(about, name),)
         return (cells.rounded(self.median(name)),)
 
     def told_of(self, which: int, name: str) -> tuple[Cell, ...]:
@@ -184,7 +167,7 @@ class Trials:
         A figure may be followed by what it is to be above, as in ``F_SF > 0.6``.
         """
         if name == "<metrics>":
-            return cells.metric_cells(self.outcomes[which])
+            return cells.metric_cells(self.outcomes[which].figures)
         own = {"seed": self.specs[which].seed, **self.outcomes[which].figures}
         figure, _, least = name.partition(" > ")
         if least:
@@ -234,11 +217,8 @@ class StudyWalls:
     @property
     def by_wall(self) -> tuple["StudyWalls", ...]:
         """The walls of each set."""
-        walls = dict.fromkeys(trials.wall for trials in self.all)
-        return tuple(
-            StudyWalls(self.context, tuple(one for one in self.all if one.wall == wall))
-            for wall in walls
-        )
+        groups = groupby(self.all, key=attrgetter("wall"))
+        return tuple(StudyWalls(self.context, tuple(group)) for _, group in groups)
 
     @property
     def name(self) -> str:
@@ -307,7 +287,7 @@ def rows_of(words: Mapping[str, Any], found: StudyWalls) -> Rows:
 class PaperItem:
     """A table or figure of the paper: data, and what is read off it."""
 
-    # Does what the item is about: builds walls, or times them; a :class:`Study` may be worded
+    # Does what the item is about: builds walls, or times them; see :func:`worded_study`
     study: Callable[[Context], Any] = lambda context: context
     then: Callable[[Any], Any] = lambda built: built  # What is made of that; all below take it
     # Compares what was found with claims of the paper; they are a table too
@@ -321,7 +301,7 @@ class PaperItem:
 
     def worded(self, words: Mapping[str, Any]) -> "PaperItem":
         """Return it with its words, and with the study that they name."""
-        study = Study.worded(**words["study"]) if "study" in words else self.study
+        study = partial(worded_study, **words["study"]) if "study" in words else self.study
         return replace(self, words=words, study=study)
 
     def make(self, context: Context) -> Output:

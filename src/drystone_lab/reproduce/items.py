@@ -4,7 +4,6 @@ import tomllib
 from collections.abc import Mapping
 from pathlib import Path
 from pkgutil import resolve_name
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from drystone.errors import UsageError
@@ -12,14 +11,14 @@ from drystone.errors import UsageError
 if TYPE_CHECKING:  # names are listed without waiting for matplotlib
     from drystone_lab.reproduce.item import PaperItem
 
-ITEMS: Mapping[str, Mapping[str, Any]] = MappingProxyType(
-    tomllib.loads(Path(__file__).with_name("paper.toml").read_text("utf-8"))
+ITEMS: Mapping[str, Mapping[str, Any]] = tomllib.loads(
+    Path(__file__).with_name("paper.toml").read_text("utf-8")
 )
 """What ``paper.toml`` says of each, in the order of the paper."""
 
-ALSO: Mapping[str, str] = MappingProxyType(
-    {other: name for name, words in ITEMS.items() for other in words.get("also", ())}
-)
+ALSO: Mapping[str, str] = {
+    other: name for name, words in ITEMS.items() for other in words.get("also", ())
+}
 """Other names, of those that are made together."""
 
 ALL = "all"

@@ -15,6 +15,10 @@ from scipy import ndimage
 from drystone.clusters import cluster_stones
 from drystone.contacts.blocks import model_from_labels
 from drystone.contacts.gaps import model_with_closed_gaps, settle_gaps
+from drystone.drawing.canvas import draw
+from drystone.drawing.drawing import GROUND, MARGIN, Drawing, Surface, ground
+from drystone.drawing.outlines import label_regions
+from drystone.drawing.palette import PLAIN_COLOUR, cluster_colour
 from drystone.drawing.pictures.stones import plot_joint_paths
 from drystone.metrics import paths as joint_paths
 from drystone.metrics.frame import frame_wall, reduce_labels
@@ -24,9 +28,9 @@ from drystone.model.stone import StoneSet
 from drystone.model.wall import Labels
 from drystone.poses import PoseBook
 from drystone.statics.limit import lateral_resistance
+from drystone_lab import cells
 from drystone_lab import pictures as sheets
-from drystone_lab.reproduce import cells
-from drystone_lab.reproduce.cells import METRICS, rounded
+from drystone_lab.cells import METRICS, rounded
 from drystone_lab.reproduce.item import Context, ItemFigure, PaperItem, StudyWalls, Trials
 from drystone_lab.reproduce.items import ITEMS
 from drystone_lab.runs.outcome import RunOutcome
@@ -122,8 +126,20 @@ class TracedWall:
         return ("as traced", self.labels), (PAPERS_WAY, self.papers_way)
 
     def panel(self, title: str, labels: Labels) -> sheets.Panel:
-        """Return a picture of it as a panel of a sheet."""
-        return sheets.masonry_panel(title, labels, self.clusters, 1 / self.wall.scale)
+        """Return a picture of it as a panel of a sheet, stones coloured by cluster, source px."""
+        unit = 1 / self.wall.scale
+        height, width = (unit * size for size in labels.shape)
+        margin, depth = MARGIN * width, GROUND * max(height, 0.2 * width)
+        box = (-margin, -depth, width + margin, height + margin)
+        stones = []
+        for region in label_regions(labels):
+            cluster = self.clusters.get(region.id)
+            fill = PLAIN_COLOUR if cluster is None else cluster_colour(cluster)
+            loops = tuple(loop * unit for loop in region.loops)
+            stones.append(Surface(f"stone-{region.id}", loops, fill))
+        drawing = Drawing((*ground(box), *stones), box, "px")
+        aspect = sheets.wall_aspect(height / width)
+        return sheets.Panel(title, aspect, lambda ax: draw(drawing, ax))
 
 
 def masons_wall(wall: Target, data: Path | None) -> TracedWall:
@@ -173,8 +189,7 @@ def _metrics(walls: Sequence[TracedWall]) -> Rows:
         for name, labels in each.both:
             ours = measured(labels)
             size = f"{ours.width:.0f} x {ours.height:.0f}"
-            found = (rounded(getattr(ours, metric)) for metric in METRICS)
-            yield each.wall.name, name, size, ours.stones, *found
+            yield each.wall.name, name, size, ours.stones, *cells.metric_cells(vars(ours))
         yield each.wall.name, "paper, Table 2", None, None, *REFERENCES[each.wall.number]
 
 
@@ -279,7 +294,7 @@ def _references(wall: FiveWall) -> Rows:
     metrics = [(what, measured(labels)) for what, labels in wall.masons.both]
     count = metrics[0][1].stones
     for what, ours in metrics:
-        figures = (rounded(getattr(ours, metric)) for metric in METRICS)
+        figures = cells.metric_cells(vars(ours))
         yield number, name, f"masons, {what}", count, count, *figures, *papers
 
 
@@ -291,7 +306,8 @@ def _ours(wall: FiveWall) -> Rows:
     def one(what: str, place: int) -> tuple[Cell, ...]:
         outcome = trials.outcomes[place]
         named = f"{what}, seed {trials.specs[place].seed}"
-        return (number, name, named, *cells.placed_of(outcome), *cells.metric_cells(outcome))
+        metrics = cells.metric_cells(outcome.figures)
+        return (number, name, named, *cells.placed_of(outcome), *metrics)
 
     yield *one("fixed seed", 0), *NONE
     middle = (rounded(trials.median(metric)) for metric in METRICS)
@@ -343,32 +359,31 @@ Way = tuple[str, tuple[JointPath, ...], int, int]
 """Name, paths, length of a straight one in px, and how many Fig. 17 draws."""
 
 
-@dataclass(frozen=True, eq=False)
-class Paths:
+class Paths(NamedTuple):
     """The shortest paths along the joints of a wall either way, the shortest first."""
 
     name: str
     labels: Labels
     ways: tuple[Way, Way]
 
-    @classmethod
-    def of(cls, name: str, labels: Labels, wall_width_px: float | None = None) -> "Paths":
-        """Find the paths of a label image."""
-        framed = frame_wall(labels, wall_width_px).labels
-        joint = joint_mask(framed)
-        rows, cols = joint.shape
-        across = "horizontal", joint_paths.horizontal_paths(joint), cols - 1, 3
-        upright = "vertical", joint_paths.vertical_paths(joint), rows - 1, 7
-        return cls(name, framed, (across, upright))
+
+def paths_of(name: str, labels: Labels, wall_width_px: float | None = None) -> Paths:
+    """Find the paths of a label image."""
+    framed = frame_wall(labels, wall_width_px).labels
+    joint = joint_mask(framed)
+    rows, cols = joint.shape
+    across = "horizontal", joint_paths.horizontal_paths(joint), cols - 1, 3
+    upright = "vertical", joint_paths.vertical_paths(joint), rows - 1, 7
+    return Paths(name, framed, (across, upright))
 
 
 def shortest_paths(context: Context, wall: Target = PR) -> tuple[Paths, ...]:
     """Find the shortest paths; of published stones the image is the masons' wall."""
     built = context.wall(wall.run(context.seed))
-    found = [Paths.of(f"planned {wall.name}", built.labels, built.site.width_px)]
+    found = [paths_of(f"planned {wall.name}", built.labels, built.site.width_px)]
     if context.data is not None and wall.source.kind == "published":
         traced = wall.source.labels(context.data)
-        found.append(Paths.of(f"the masons' {wall.name}", reduce_labels(traced, wall.scale)))
+        found.append(paths_of(f"the masons' {wall.name}", reduce_labels(traced, wall.scale)))
     return tuple(found)
 
 

@@ -32,7 +32,7 @@ from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import GROUND, Interface, RigidBlockModel
 from drystone.statics.result import LateralResistance
 from drystone_lab import pictures
-from drystone_lab.reproduce.cells import rounded
+from drystone_lab.cells import rounded
 from drystone_lab.reproduce.construction import Moment, construction
 from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem
 from drystone_lab.reproduce.items import ITEMS
@@ -232,7 +232,6 @@ def plot_boundary_edges(
 class Blocks(NamedTuple):
     """Three stones of a wall as pixels, edges and rigid blocks; and the model of the whole."""
 
-    wall: Target
     labels: Labels
     edges: tuple[NDArray[np.float64], NDArray[np.float64]]  # Starts and ends
     model: RigidBlockModel
@@ -244,7 +243,7 @@ def blocks(context: Context, wall: Target = PR) -> Blocks:
     built = context.wall(wall.run(context.seed))
     labels = three_stones(built)
     model, whole = (model_from_labels(each).model for each in (labels, built.labels))
-    return Blocks(wall, labels, boundary_edges(labels), model, whole)
+    return Blocks(labels, boundary_edges(labels), model, whole)
 
 
 def three_stones(wall: Wall) -> Labels:

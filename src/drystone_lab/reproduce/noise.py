@@ -16,8 +16,8 @@ from drystone.metrics.measure import WallMetrics, measure_labels
 from drystone.model.wall import Labels
 from drystone.statics.limit import lateral_resistance
 from drystone_lab import pictures
+from drystone_lab.cells import LEVEL, METRICS, differences, figures_of, rounded, trend
 from drystone_lab.pictures import plot_walls
-from drystone_lab.reproduce.cells import LEVEL, METRICS, figures_of, rounded, trend
 from drystone_lab.reproduce.item import Claimed, ItemFigure, PaperItem, StudyWalls, Trials
 from drystone_lab.runs.outcome import RunOutcome
 from drystone_lab.table import Rows
@@ -86,10 +86,7 @@ class NoiseLevel(NamedTuple):
         return trials.median(name) or 0.0
 
 
-NoiseLevels = Sequence[NoiseLevel]
-
-
-def published_of(levels: NoiseLevels) -> list[tuple[NoiseLevel, ReferenceWall]]:
+def published_of(levels: Sequence[NoiseLevel]) -> list[tuple[NoiseLevel, ReferenceWall]]:
     """Return the levels whose published walls are there, and these."""
     return [(level, level.reference) for level in levels if level.reference is not None]
 
@@ -100,7 +97,7 @@ def is_full(outcome: RunOutcome) -> bool:
     return filling is not None and filling > FILLED
 
 
-def noise_findings(levels: NoiseLevels) -> Iterator[Claimed]:
+def noise_findings(levels: Sequence[NoiseLevel]) -> Iterator[Claimed]:
     """Compare the levels with what §5.3 says of them."""
     low = [level for level in levels if level.noise < 60]
     walls = [outcome for level in low for outcome in level.ours.outcomes]
@@ -129,7 +126,7 @@ def noise_findings(levels: NoiseLevels) -> Iterator[Claimed]:
     yield _against_reference("staggered", levels, "F_AV")
 
 
-def _trending(key: str, levels: NoiseLevels, name: str, sign: int) -> Claimed:
+def _trending(key: str, levels: Sequence[NoiseLevel], name: str, sign: int) -> Claimed:
     """Compare a trend over the medians of the sets with a claimed one; 0 for none."""
     # Over walls; over sets, which alone are independent.
     walls = [
@@ -148,7 +145,7 @@ def _trending(key: str, levels: NoiseLevels, name: str, sign: int) -> Claimed:
     return Claimed(key, False if sets.clear else None if others else True, words=words)
 
 
-def _between(levels: NoiseLevels) -> Iterator[Claimed]:
+def _between(levels: Sequence[NoiseLevel]) -> Iterator[Claimed]:
     if len(levels) < 2:
         return
     worst = {
@@ -173,7 +170,7 @@ def _between(levels: NoiseLevels) -> Iterator[Claimed]:
         yield Claimed("surprising", None, best=best, above=above[best])
 
 
-def _against_reference(key: str, levels: NoiseLevels, name: str) -> Claimed:
+def _against_reference(key: str, levels: Sequence[NoiseLevel], name: str) -> Claimed:
     pairs = [
         (level.noise, level.least(name), getattr(wall.metrics, name) or 0.0)
         for level, wall in published_of(levels)
@@ -185,13 +182,13 @@ def _against_reference(key: str, levels: NoiseLevels, name: str) -> Claimed:
     return Claimed(key, holds, better=better, count=len(pairs), each=each)
 
 
-def _references(levels: NoiseLevels) -> Rows:
+def _references(levels: Sequence[NoiseLevel]) -> Rows:
     for level, wall in published_of(levels):
         of = wall.metrics
         yield level.noise, of.stones, *map(rounded, (of.F_SF, of.F_AV, of.F_AH, *wall.resistances))
 
 
-def _noise_pictures(levels: NoiseLevels) -> Iterator[ItemFigure]:
+def _noise_pictures(levels: Sequence[NoiseLevel]) -> Iterator[ItemFigure]:
     walls = []
     for level in levels:
         place = level.ours.middle
@@ -204,7 +201,7 @@ def _noise_pictures(levels: NoiseLevels) -> Iterator[ItemFigure]:
     yield _over_noise(levels)
 
 
-def _scatter(levels: NoiseLevels) -> ItemFigure:
+def _scatter(levels: Sequence[NoiseLevel]) -> ItemFigure:
     groups = {
         level.ours.wall.noise: list(
             zip(level.ours.values("F_LR"), level.ours.values("F_SF"), strict=True)
@@ -249,7 +246,7 @@ SHIFTS = (0.0, 1.4, -1.4, 2.8, -2.8)
 """Walls of one level in turn, so that they do not hide each other; % of noise."""
 
 
-def _over_noise(levels: NoiseLevels) -> ItemFigure:
+def _over_noise(levels: Sequence[NoiseLevel]) -> ItemFigure:
     """Draw the four figures over the noise, with one legend above."""
     sheet, axes = pictures.panel_sheet(len(METRICS), 2, (3.9, 2.8))
     for ax, name in zip(axes, ("F_SF", "F_LR", "F_AV", "F_AH"), strict=True):
@@ -266,12 +263,12 @@ def _over_noise(levels: NoiseLevels) -> ItemFigure:
         ax.grid(axis="y", color=GREY, linewidth=0.3, alpha=0.5)
         ticks = [f"{one.noise}{'*' * one.ours.wall.stand_in}" for one in levels]
         ax.set_xticks([level.noise for level in levels], ticks)
-    handles, labels = axes[0].get_legend_handles_labels()
-    sheet.legend(handles, labels, fontsize=7, frameon=False, loc="outside upper center", ncols=4)
+    named = axes[0].get_legend_handles_labels()
+    sheet.legend(*named, fontsize=7, frameon=False, loc="outside upper center", ncols=4)
     return ItemFigure("fig24", sheet)
 
 
-def _series(levels: NoiseLevels, name: str) -> list[list[tuple[int, float | None]]]:
+def _series(levels: Sequence[NoiseLevel], name: str) -> list[list[tuple[int, float | None]]]:
     """Return noise and value of what each of :data:`SERIES` shows."""
     full, poor = (
         [
@@ -302,8 +299,7 @@ def turned_findings(found: StudyWalls) -> Iterator[Claimed]:
     """Compare the figures of equal seeds."""
     for key, figure in (("filling", "F_SF"), ("resistance", "F_LR")):
         few, many = (found.values(way, figure) for way in ("quarter", "10deg"))
-        both = zip(few, many, strict=True)
-        yield gain_of(key, [b - a for a, b in both if a is not None and b is not None])
+        yield gain_of(key, differences(many, few))
 
 
 def gain_of(key: str, gains: Sequence[float]) -> Claimed:

@@ -9,8 +9,8 @@ from typing import NamedTuple
 from scipy.stats import mannwhitneyu
 
 from drystone.model.wall import Wall
+from drystone_lab.cells import LEVEL, figures_of, metric_cells, placed_of
 from drystone_lab.pictures import plot_two_figures, plot_walls
-from drystone_lab.reproduce.cells import LEVEL, figures_of, metric_cells, placed_of
 from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem, StudyWalls, Trials
 from drystone_lab.runs.spec import Changes, generated, published
 from drystone_lab.table import Rows
@@ -62,7 +62,7 @@ def rounded_findings(found: StudyWalls) -> Iterator[Claimed]:
 def _rounded_pictures(found: StudyWalls) -> Iterator[ItemFigure]:
     walls = []
     for one in found:
-        filling, interlocking, *_ = metric_cells(one.outcomes[one.middle])
+        filling, interlocking, *_ = metric_cells(one.outcomes[one.middle].figures)
         title = f"{one.wall.name}\nF_SF {filling}, F_AV {interlocking} %"
         title += f", seed {one.specs[one.middle].seed}"
         walls.append(found.drawn(one, title, one.middle))
@@ -100,7 +100,8 @@ def _irregular(found: StudyWalls) -> Rows:
         outcome = one.outcomes[0]
         yield (
             found.name, one.wall.said, one.wall.scale, one.way, *placed_of(outcome),
-            len({*outcome.clusters.values()}), *metric_cells(outcome), outcome.figures["wedges"],
+            len({*outcome.clusters.values()}), *metric_cells(outcome.figures),
+            outcome.figures["wedges"],
         )  # fmt: skip
     # In the left and in the right wall of the paper.
     for number, placed in enumerate((90, 91), 1):
@@ -186,9 +187,6 @@ def head_joints(course: Sequence[Brick]) -> list[float]:
 ASPECTS = (2.0, 3.0)
 HEIGHT_PX = 12
 
-FULL_SIZE, QUICK_SIZE = (216, 17), (72, 4)
-"""Width of the wall in px, which is a whole number of either brick, and courses."""
-
 
 Bricks = Sequence[tuple[float, Trials, Wall]]
 """Aspect, run and wall; all aspects from one side, then from both."""
@@ -196,7 +194,8 @@ Bricks = Sequence[tuple[float, Trials, Wall]]
 
 def brick_walls(context: Context, size: tuple[int, int] | None = None) -> Bricks:
     """Build walls of bricks of both aspects; bricks are enough for all courses."""
-    width, courses = size or (QUICK_SIZE if context.quick else FULL_SIZE)
+    # The width in px is a whole number of either brick.
+    width, courses = size or ((72, 4) if context.quick else (216, 17))
     walls = [_brick_wall(aspect, width, courses).here(context.data) for aspect in ASPECTS]
     sides: Mapping[str, Changes] = {"one side": (), "two sides": TWO_SIDED}
     found = StudyWalls.built(context, walls, sides, (context.seed,))
@@ -222,7 +221,7 @@ def _bricks(found: Bricks) -> Rows:
         courses = courses_of(bricks_of(wall), HEIGHT_PX, round(HEIGHT_PX * aspect))
         yield (
             aspect, one.wall.said, one.way, f"{spec.width:g} x {spec.height:g}",
-            *placed_of(outcome), *metric_cells(outcome), courses.lying, courses.in_course,
+            *placed_of(outcome), *metric_cells(outcome.figures), courses.lying, courses.in_course,
             courses.courses, courses.joints, courses.crossed,
         )  # fmt: skip
 

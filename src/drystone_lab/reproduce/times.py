@@ -15,8 +15,8 @@ from drystone.planner.settings import method_settings
 from drystone.poses import PoseBook
 from drystone.selection.sampling import Sampling
 from drystone_lab import timed_walls
+from drystone_lab.cells import metric_cells, placed_of, trend
 from drystone_lab.pictures import plot_growth, plot_walls, step_time_panels
-from drystone_lab.reproduce.cells import metric_cells, placed_of, trend
 from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem, StudyWalls
 from drystone_lab.table import Rows
 from drystone_lab.timed_walls import SAMPLINGS, TimedWall, fitted, parts_ms, three_digits
@@ -30,14 +30,10 @@ def timed(context: Context, wall: Target, changes: Mapping[str, object]) -> Time
     return timed_walls.planned(wall, context.data, settings, seed=context.seed, repeats=repeats)
 
 
-BySampling = Mapping[Sampling, TimedWall]
-
-
 class StepWalls(NamedTuple):
-    """Walls by sampling, their name, and the folder that may have the times of the authors."""
+    """Walls by sampling, and the folder that may have the times of the authors."""
 
-    walls: BySampling
-    name: str
+    walls: Mapping[Sampling, TimedWall]
     data: Path | None
 
 
@@ -52,7 +48,7 @@ PROCEDURES: Mapping[str, tuple[Part, ...]] = {
 def by_sampling(context: Context, wall: Target = PR) -> StepWalls:
     """Time a wall with either sampling."""
     walls = {sampling: timed(context, wall, {"sampling": sampling}) for sampling in SAMPLINGS}
-    return StepWalls(walls, wall.name, context.data)
+    return StepWalls(walls, context.data)
 
 
 RELEASED: Mapping[str, str] = {
@@ -69,8 +65,7 @@ Times = tuple[int, int, dict[str, float], int | None]
 
 def released(data: Path | None, name: str) -> Times | None:
     """Return the times of the authors; None without the file."""
-    path = None if data is None else data / "times" / RELEASED[name]
-    if path is None or not path.is_file():
+    if data is None or not (path := data / "times" / RELEASED[name]).is_file():
         return None
     rows = np.loadtxt(path, delimiter=";", skiprows=1)
     placement, typology, stabilisation, kinematics = rows[:, 2:6].sum(axis=0).tolist()
@@ -112,7 +107,7 @@ def late_over_early(seconds: Sequence[float]) -> float:
     return fmean(seconds[-quarter:]) / fmean(seconds[:quarter])
 
 
-def step_findings(walls: BySampling) -> Iterator[Claimed]:
+def step_findings(walls: Mapping[Sampling, TimedWall]) -> Iterator[Claimed]:
     """Compare measured steps with what §6.1 says of them."""
     variant, full = walls["variant"].steps, walls["full"].steps
     each = {SAMPLINGS[name]: shares(procedure_seconds(wall.steps)) for name, wall in walls.items()}
@@ -143,7 +138,7 @@ def _trend_words(pairs: Sequence[tuple[float, float | None]]) -> str:
     return "" if found is None else f", {found.words()}"
 
 
-def step_rows(walls: BySampling) -> Rows:
+def step_rows(walls: Mapping[Sampling, TimedWall]) -> Rows:
     """Return the times of steps by eight stones placed, and how those of a candidate grow."""
     for sampling, wall in walls.items():
         for first in range(0, len(wall.steps), 8):
@@ -179,9 +174,6 @@ STEPS = PaperItem(
         )
     ],
 )
-
-PUBLISHED = "PR"
-"""Name of the stones of the paper."""
 
 PAPER_S = {"whole wall": {140 * 40: 0.18 * 60}, "longest step": {560 * 160: 25.0}}
 """By pixels.  §6.3: 32 stones in .18 minutes at 140 x 40 px; at the highest resolution no step
@@ -225,14 +217,11 @@ def scale_findings(walls: Mapping[float, TimedWall]) -> Iterator[Claimed]:
                 yield Claimed("seconds", holds, size=wall.size, what=what, said=said, seconds=took)
 
 
-def pixel_rows(name: str, by_scale: Mapping[float, TimedWall]) -> Rows:
-    """Return the times of walls of several resolutions, and their exponents.
-
-    The stones :data:`PUBLISHED` have the paper's times beside.
-    """
+def pixel_rows(by_scale: Mapping[float, TimedWall]) -> Rows:
+    """Return the times of walls of several resolutions, the paper's beside, and their exponents."""
     walls = by_scale.values()
     for wall in walls:
-        said = [s.get(wall.pixels) if name == PUBLISHED else None for s in PAPER_S.values()]
+        said = [seconds.get(wall.pixels) for seconds in PAPER_S.values()]
         candidates = fmean(step.candidates for step in wall.steps)
         yield three_digits(
             (wall.size, len(wall.steps), candidates, *parts_ms(wall.steps), wall.seconds, said[0],
@@ -262,7 +251,7 @@ def _scales_pictures(found: ScaledWalls) -> Iterator[ItemFigure]:
     claims = []
     for what, marker, how in (("whole wall", "x", ""), ("longest step", "v", ", below")):
         claims += [(f"paper: {what}{how}", marker, px, s) for px, s in PAPER_S[what].items()]
-    plot_growth(figure.add_subplot(), series, claims if found.built.name == PUBLISHED else ())
+    plot_growth(figure.add_subplot(), series, claims)
     yield ItemFigure("fig29-time", figure)
 
 
@@ -271,7 +260,7 @@ RESOLUTION = PaperItem(
     claims=lambda found: scale_findings(found.timed),
     tables={
         "walls": lambda found: [
-            (scale, wall.size, *placed_of(one.outcomes[0]), *metric_cells(one.outcomes[0]))
+            (scale, wall.size, *placed_of(one.outcomes[0]), *metric_cells(one.outcomes[0].figures))
             for (scale, wall), one in zip(found.timed.items(), found.built, strict=True)
         ]
     },
@@ -279,7 +268,7 @@ RESOLUTION = PaperItem(
         "released": lambda found: released_rows(
             found.built.context.data, {str(scale): wall for scale, wall in found.timed.items()}
         ),
-        "pixels": lambda found: pixel_rows(found.built.name, found.timed),
+        "pixels": lambda found: pixel_rows(found.timed),
     },
     pictures=_scales_pictures,
 )

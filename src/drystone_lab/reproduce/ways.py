@@ -3,13 +3,13 @@
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
-from itertools import accumulate
 from statistics import fmean
 from typing import NamedTuple
 
 from matplotlib.axes import Axes
 
 from drystone.contacts.blocks import model_from_labels
+from drystone.drawing.drawing import step_by_id
 from drystone.drawing.outlines import Bounds
 from drystone.drawing.palette import OUTLINE_COLOUR
 from drystone.drawing.pictures.mechanism import plot_mechanism
@@ -21,11 +21,9 @@ from drystone.statics.flow.nonassociative import NonassociativeResult, nonassoci
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LimitResult, LimitStatus
-from drystone_lab import walls
-from drystone_lab.paired import median_of
+from drystone_lab import cells, walls
+from drystone_lab.cells import METRICS, rounded
 from drystone_lab.pictures import Panel, group_panels, plot_two_figures, sheet_of, wall_aspect
-from drystone_lab.reproduce import cells
-from drystone_lab.reproduce.cells import METRICS, rounded
 from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem, StudyWalls, Trials
 from drystone_lab.reproduce.items import ITEMS
 from drystone_lab.runs.spec import Changes
@@ -70,7 +68,7 @@ def _summary(case: BaseCase) -> Rows:
     for side, papers in ALPHAS.items():
         found = case.over_mu(side)
         words = f"{min(found):.2f} to {max(found):.2f}" if found else None
-        row += [rounded(median_of(found)), words, papers]
+        row += [rounded(cells.median_of(found)), words, papers]
     yield tuple(row)
 
 
@@ -148,8 +146,7 @@ def _wedges_picture(trials: Trials, wall: Wall) -> ItemFigure:
     title = f"Wall {trials.wall.number}, {trials.wall.name}\n"
     title += cells.in_words(trials.outcomes[0].figures)
     aspect = wall_aspect(wall.site.height_px / wall.site.width_px)
-    sizes = accumulate((1 + len(group.wedges) for group in wall.groups), initial=1)
-    steps = dict(zip((group.placement.stone_id for group in wall.groups), sizes, strict=False))
+    steps = step_by_id(wall)
 
     def draw_whole(ax: Axes) -> None:
         plot_wall(wall, None, ax)
@@ -249,23 +246,19 @@ def _stabilised_claims(found: StudyWalls) -> Iterator[Claimed]:
         yield Claimed("together", best == "both", name=group.name, best=best)
 
 
-def _stabilised_picture(group: StudyWalls, number: int) -> ItemFigure:
-    points = {
-        one.way: tuple(zip(one.values("wedge_share"), one.values("F_SF"), strict=True))
-        for one in group
-    }
-    # The set is named in the picture itself, as one of them stands in for the paper's.
-    across = f"{group.name}: area of wedges, % of the wall"
-    ax = plot_two_figures(points, across=across, up="F_SF")
-    return ItemFigure(f"fig20_{number}", ax.figure, group)
+def _stabilised_pictures(found: StudyWalls) -> Iterator[ItemFigure]:
+    for number, group in enumerate(found.by_wall, 1):
+        points = {
+            one.way: tuple(zip(one.values("wedge_share"), one.values("F_SF"), strict=True))
+            for one in group
+        }
+        # The set is named in the picture itself, as one of them stands in for the paper's.
+        across = f"{group.name}: area of wedges, % of the wall"
+        ax = plot_two_figures(points, across=across, up="F_SF")
+        yield ItemFigure(f"fig20_{number}", ax.figure, group)
 
 
-STABILISATION = PaperItem(
-    claims=_stabilised_claims,
-    pictures=lambda found: [
-        _stabilised_picture(group, number) for number, group in enumerate(found.by_wall, 1)
-    ],
-)
+STABILISATION = PaperItem(claims=_stabilised_claims, pictures=_stabilised_pictures)
 
 NAMED, RELEASED, CAUSES = (
     {name: tuple(changes.items()) for name, changes in ways.items()}
@@ -309,10 +302,11 @@ VARIANTS = PaperItem(
 )
 
 
-def _methods_picture(group: StudyWalls) -> ItemFigure:
-    number = {"R": "B.30", "PR": "B.31", "IR": "B.32"}.get(group.name, "B.1")
-    drawn = group.sheet(f"fig{number.replace('.', '')}", 2, "{0.way}")
-    return drawn._replace(about=(number, group.name))
+def _methods_pictures(found: StudyWalls) -> Iterator[ItemFigure]:
+    for group in found.by_wall:
+        number = {"R": "B.30", "PR": "B.31", "IR": "B.32"}[group.name]
+        drawn = group.sheet(f"fig{number.replace('.', '')}", 2, "{0.way}")
+        yield drawn._replace(about=(number, group.name))
 
 
-ALL_METHODS = PaperItem(pictures=lambda found: [_methods_picture(group) for group in found.by_wall])
+ALL_METHODS = PaperItem(pictures=_methods_pictures)

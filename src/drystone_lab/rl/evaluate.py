@@ -20,7 +20,7 @@ from drystone.planner.workshop import Workshop
 from drystone.search.goal import FoundWall
 from drystone.search.yard import Yard
 from drystone.selection.policies.registry import rule_of
-from drystone_lab.paired import COVERED
+from drystone_lab.cells import COVERED
 from drystone_lab.rl.episode import ARRIVING, KINDS, DrawSettings, draw_wall
 from drystone_lab.rl.train import HELD_OUT
 from drystone_lab.table import markdown_rows
@@ -80,13 +80,12 @@ def report(found: Mapping[str, Mapping[str, Sequence[float]]], title: str) -> st
         [name, *(f"{np.mean(walls[figure]):.3f}" for figure in FIGURES)]
         for name, walls in found.items()
     ]
-    paired = []
-    for other in others:
-        cells = [other]
-        for name in FIGURES:
-            mean, half = difference(np.subtract(found[first][name], found[other][name]).tolist())
-            cells.append(f"{mean:+.3f} ± {half:.3f}{'*' if abs(mean) > half else ''}")
-        paired.append(cells)
+
+    def less(other: str, name: str) -> str:
+        mean, half = difference(np.subtract(found[first][name], found[other][name]).tolist())
+        return f"{mean:+.3f} ± {half:.3f}{'*' if abs(mean) > half else ''}"
+
+    paired = [[other, *(less(other, name) for name in FIGURES)] for other in others]
     return "\n\n".join(
         [
             f"{title}: means",

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from drystone_lab.reproduce.construction import construction
-from drystone_lab.reproduce.item import Context
+from drystone_lab.reproduce.item import Context, StudyWalls
 from drystone_lab.reproduce.items import item_named
 from drystone_lab.runs.outcome import FIGURES, Runner, RunOutcome
 from drystone_lab.runs.spec import generated
@@ -30,8 +30,11 @@ def built(folder, wall):
 def on(name, *walls, seeds=2):
     """An item that builds walls, of these and from so many seeds."""
     item = item_named(name)
-    changes = {"walls": walls, "quick_walls": (), "seeds": seeds, "quick_seeds": seeds}
-    return replace(item, study=replace(item.study, **changes))
+    worded = item.words["study"].get("ways", {"variant": {}})
+    ways = {way: tuple(changes.items()) for way, changes in worded.items()}
+    return replace(
+        item, study=lambda c: StudyWalls.built(c, walls, ways, [c.seed + k for k in range(seeds)])
+    )
 
 
 def of(name, *given):

@@ -8,7 +8,7 @@ import pytest
 
 from drystone.errors import UsageError
 from drystone.io.published import SETS
-from drystone_lab.reproduce.cells import COLUMNS, figures_of, summary, trend, wins
+from drystone_lab.cells import COLUMNS, figures_of, summary, trend, wins
 from drystone_lab.reproduce.item import PaperItem, sentences
 from drystone_lab.reproduce.items import ALSO, ITEMS, item_named, item_names
 from tests.lab.reproduce.small_walls import outcome

@@ -1,13 +1,25 @@
-"""Figures of walls as cells of tables and as words: medians, pairs, trends."""
+"""Figures of walls as cells of tables and as words: medians, pairs of one seed, trends."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from statistics import median
+from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
 from scipy.stats import spearmanr
 
-from drystone_lab.paired import LOWER_IS_BETTER, median_of
 from drystone_lab.runs.outcome import RunOutcome
 from drystone_lab.table import Cell
+
+LOWER_IS_BETTER = ("F_AH", "T_LEVEL", "E_FLUSH")
+"""Figures of a wall; of all others more is better."""
+
+LEVEL = 0.05
+"""What equal chances would give less often than this is no chance."""
+
+COVERED = 1 - LEVEL
+"""Share of the draws between the ends of an interval."""
 
 FORMATS = {"placed": ".0f", "F_SF": ".3f", "F_AV": ".1f", "F_AH": ".2f", "F_LR": ".2f"}
 """Figures of a summary, and how the ends of their ranges are written."""
@@ -42,9 +54,9 @@ def placed_of(outcome: RunOutcome) -> tuple[Cell, Cell]:
     return outcome.figures["placed"], outcome.figures["stones"]
 
 
-def metric_cells(outcome: RunOutcome) -> tuple[Cell, ...]:
+def metric_cells(figures: Mapping[str, float | None]) -> tuple[Cell, ...]:
     """Return F_SF, F_AV, F_AH and F_LR of a wall as cells of a table."""
-    return tuple(rounded(outcome.figures[name]) for name in METRICS)
+    return tuple(rounded(figures[name]) for name in METRICS)
 
 
 def rounded(value: float | None, digits: int = 4) -> float | None:
@@ -64,6 +76,46 @@ def in_words(figures: Mapping[str, float | None]) -> str:
     )
 
 
+def median_of(values: Iterable[float | None]) -> float | None:
+    """Return the median of the values that there are; None without any.
+
+    >>> median_of([3.0, None, 1.0]), median_of([None])
+    (2.0, None)
+    """
+    found = [value for value in values if value is not None]
+    return median(found) if found else None
+
+
+def differences(first: Sequence[float | None], second: Sequence[float | None]) -> list[float]:
+    """Return first minus second of the pairs that have both."""
+    pairs = zip(first, second, strict=True)
+    return [a - b for a, b in pairs if a is not None and b is not None]
+
+
+def interval_of(values: NDArray[np.float64], statistic: Callable[..., Any]) -> tuple[float, float]:
+    """Return the percentile bootstrap interval of a mean or a median.
+
+    Values are drawn 10 000 times, with the same random numbers every time.
+    """
+    draws = np.random.default_rng(0).choice(values, (10_000, values.size))
+    ends = [(1 - COVERED) / 2, (1 + COVERED) / 2]
+    low, high = np.quantile(statistic(draws, axis=1), ends).tolist()
+    return low, high
+
+
+def median_difference(first: Sequence[float | None], second: Sequence[float | None]) -> str | None:
+    """Return the median of first minus second and its interval, as a cell; None without a pair.
+
+    >>> median_difference([3.0, 4.0, 9.0], [1.0, 2.5, 7.0])
+    '+2 (+1.5 to +2)'
+    """
+    found = np.array(differences(first, second))
+    if not found.size:
+        return None
+    low, high = interval_of(found, np.median)
+    return f"{np.median(found):+.3g} ({low:+.3g} to {high:+.3g})"
+
+
 SAME = 1e-9
 """Figures that differ by less are equal."""
 
@@ -81,16 +133,11 @@ def wins(
     >>> wins([0.8, 0.7, None], [0.7, 0.7, 0.9], "F_SF")
     ('F_SF', 1, 1, 0, 0.05)
     """
-    pairs = zip(first, second, strict=True)
-    more = [round(a - b, 12) for a, b in pairs if a is not None and b is not None]
+    more = [round(each, 12) for each in differences(first, second)]
     sign = -1 if figure in LOWER_IS_BETTER else 1
     better = sum(sign * each > SAME for each in more)
     worse = sum(sign * each < -SAME for each in more)
     return figure, better, len(more) - better - worse, worse, rounded(median_of(more))
-
-
-LEVEL = 0.05
-"""A trend is one that equal chances would give less often than this."""
 
 
 @dataclass(frozen=True)
