@@ -1,8 +1,8 @@
 """What a picture shows, whoever draws it: areas, lines, dots and words; walls, described once.
 
 A :class:`Drawing` is made once and drawn by a back end: :mod:`~drystone.drawing.canvas`
-(Matplotlib), :mod:`~drystone.drawing.export.vector` (SVG, DXF) or :mod:`~drystone.drawing.pixels`
-(Pillow).  x is to the right, y up from the ground.
+(Matplotlib), :mod:`~drystone.drawing.export.drawings` (SVG, DXF) or
+:mod:`~drystone.drawing.pixels` (Pillow).  x is to the right, y up from the ground.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
