@@ -51,9 +51,8 @@ def test_every_part_is_white_then_bright_and_then_stays_for_steps_that_a_gif_can
             assert away.max() < 0.03, (part.name, frame)
     # Steps that are too long for a GIF are refused.
     longest = ExportSettings(seconds_per_step=LONGEST_S)
-    assert tuple(FORMATS["gif"].files(wall, longest)) == ("build.gif",)
     (path,) = FORMATS["gif"].write(wall, tmp_path, longest)
-    assert {duration for _, duration in frames(path)} == {655_000}
+    assert (path.name, {shown for _, shown in frames(path)}) == ("build.gif", {655_000})
     for seconds in (656.0, 1e308):
         with pytest.raises(UsageError, match="E138"):
             FORMATS["gif"].files(wall, ExportSettings(seconds_per_step=seconds))
@@ -73,11 +72,9 @@ def test_the_film_has_every_step_for_its_time(tmp_path):
     with av.open(path) as film:
         rate = film.streams.video[0].average_rate
         found = [frame.to_ndarray(format="rgb24").astype(int) for frame in film.decode(video=0)]
-    assert rate == 10
-    assert len(found) == 2 * len(wall.parts) + 30
-    film = Film(wall)
-    assert found[0].shape[1::-1] == film.size_px
-    for frame, drawn in enumerate(film.frames()):
+    assert (rate, len(found)) == (10, 2 * len(wall.parts) + 30)
+    assert found[0].shape[1::-1] == Film(wall).size_px
+    for frame, drawn in enumerate(Film(wall).frames()):
         # The code is lossy, mostly along the edges.
         difference = np.abs(found[min(2 * frame, len(found) - 1)] - np.asarray(drawn))
         assert np.median(difference) < 6, frame
@@ -113,10 +110,9 @@ def test_the_stone_to_be_placed_is_drawn_one_to_one_and_what_stands_is_dim(tmp_p
     row, column = round(600 - 84 - y), round(175 + x)
     around = [int(image[row, column - 2 : column + 3].max()) for image in images]
     assert around[:4] == [0, 0, 0, 255]
-    assert around[5:] == [DIM] * 3
+    assert around[5:] == [int(DIM[1:3], 16)] * 3
     # The bar is as long as it says.
-    strip = images[1][600 - 30 :, 400:]
-    longest = max(int(run) for row in strip for run in runs(row > 0))
+    longest = max(int(run) for row in images[1][600 - 30 :, 400:] for run in runs(row > 0))
     assert longest == pytest.approx(0.1 * 500, abs=2)
 
 

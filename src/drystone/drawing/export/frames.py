@@ -136,7 +136,7 @@ def durations_ms(assembly: Assembly, settings: ExportSettings) -> list[int]:
     return [step] * len(assembly.parts) + [max(step, round(1000 * HOLD_S))]
 
 
-BRIGHT, DIM, WORDS = 255, 80, 170
+BRIGHT, DIM, WORDS = "#ffffff", "#505050", "#aaaaaa"
 STRIP_PX = 84  # below the ground: words and the bar
 EDGE_PX = 14
 MARK_PX = 24
@@ -180,11 +180,11 @@ def _picture(assembly: Assembly, settings: ExportSettings, view: PixelView, step
     items: list[Drawable] = [_site(assembly, view, DIM if step else BRIGHT)]
     if step:
         *there, part = assembly.parts[:step]
-        items += [Surface(p.name, (p.corners,), line=_grey(DIM), width_pt=2.0) for p in there]
-        items.append(Surface(part.name, (part.corners,), line=_grey(BRIGHT), width_pt=4.0))
+        items += [Surface(p.name, (p.corners,), line=DIM, width_pt=2.0) for p in there]
+        items.append(Surface(part.name, (part.corners,), line=BRIGHT, width_pt=4.0))
         reach = min(CROSS_PX / view.per_unit, 0.3 * float(np.ptp(part.corners, axis=0).min()))
         arms = np.array([[(-reach, 0.0), (reach, 0.0)], [(0.0, -reach), (0.0, reach)]])
-        items.append(Lines("", [*(part.centroid + arms)], _grey(BRIGHT), 2.0))
+        items.append(Lines("", [*(part.centroid + arms)], BRIGHT, 2.0))
     paint(picture, items, view)
     _words(picture, assembly, view, step)
     with BytesIO() as file:
@@ -192,7 +192,7 @@ def _picture(assembly: Assembly, settings: ExportSettings, view: PixelView, step
         return file.getvalue()
 
 
-def _site(assembly: Assembly, view: PixelView, level: int) -> Lines:
+def _site(assembly: Assembly, view: PixelView, colour: str) -> Lines:
     """Return the ground, and the marks at the wall's corners, which point into the wall."""
     width, height = assembly.size
     long, short = MARK_PX / view.per_unit, min(MARK_PX, EDGE_PX - 2) / view.per_unit
@@ -201,7 +201,7 @@ def _site(assembly: Assembly, view: PixelView, level: int) -> Lines:
         for y, sign_y in ((0.0, 1.0), (height, -1.0)):
             lines.append(np.array([(x + sign_x * long, y), (x - sign_x * short, y)]))
             lines.append(np.array([(x, y + sign_y * long), (x, y - sign_y * short)]))
-    return Lines("site", lines, _grey(level), 1.0)
+    return Lines("site", lines, colour, 1.0)
 
 
 def _words(picture: Image.Image, assembly: Assembly, view: PixelView, step: int) -> None:
@@ -224,7 +224,3 @@ def _words(picture: Image.Image, assembly: Assembly, view: PixelView, step: int)
     draw.text((EDGE_PX, y), name, BRIGHT, font(40, bold=True), anchor="lm")
     end = EDGE_PX + draw.textlength(name, font(40, bold=True))
     draw.text((end + 24, y), what, WORDS, font(20), anchor="lm")
-
-
-def _grey(level: int) -> str:
-    return f"#{level:02x}{level:02x}{level:02x}"
