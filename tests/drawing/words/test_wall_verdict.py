@@ -7,9 +7,11 @@ from drystone.contacts.blocks import model_from_labels
 from drystone.contacts.gaps import settle_gaps
 from drystone.contacts.given import model_from_json
 from drystone.drawing.words.analysis import ModelledWall, judge_wall
-from drystone.drawing.words.modelling import gap_spread
+from drystone.drawing.words.modelling import ModelRequest, modelled
+from drystone.io.walls import GivenWall
 from drystone.statics.failing.mechanism import Names
 from drystone.statics.limit import lateral_resistance
+from drystone.statics.loads import LoadCase
 from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
 from tests.contacts.test_gaps import bond
 
@@ -56,13 +58,16 @@ def test_what_no_solver_could_answer_is_not_judged():
     failed = LimitResult(LimitStatus.FAILED, "left")
     wall = ModelledWall(model_from_json({"blocks_xywh": TALL}), np.ones((1, 1)), Names())
     stands, said = judge_wall("1 stone", wall, LateralResistance(failed, failed, 0.6))
-    assert stands is None
-    assert "no answer could be certified" in said
+    assert (stands, "no answer could be certified" in said) == (None, True)
 
 
 def test_the_spread_says_what_the_reach_decides():
+    def spread(labels, width, mu=None):
+        asked = ModelRequest(mu, None, "pixels", width, LoadCase("tilting", 0.0, (), (), None))
+        return modelled(GivenWall(labels), asked, "wall").remarks["gaps"].split("; ")[-1]
+
     labels = bond(6, 20, 38, 2)
-    assert gap_spread(labels, 2) == (
+    assert spread(labels, "2px") == (
         "F_LR .596 with gaps up to 2 px closed (unstable with gaps up to 1 px closed,"
         " .596 with gaps up to 4 px closed)"
     )
@@ -70,10 +75,9 @@ def test_the_spread_says_what_the_reach_decides():
         lateral_resistance(model_from_labels(settle_gaps(labels, push)[0]).model).value
         for push in (None, "left", "right")
     )
-    assert gap_spread(labels, None) == (
+    assert spread(labels, "settle") == (
         f"F_LR {settled:.3f} with stones settled ({left:.3f} with stones pushed left,"
         f" {right:.3f} with stones pushed right)"
     ).replace("0.", ".")
     stack = np.kron([[1], [0], [2]], np.ones((2, 8), int))
-    without = gap_spread(stack, 2, mu=0.0)
-    assert without.startswith("F_LR not defined with gaps up to 2 px closed (unstable")
+    assert "F_LR not defined with gaps up to 2 px closed (unstable" in spread(stack, "2", (0, 0))

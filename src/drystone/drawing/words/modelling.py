@@ -1,9 +1,8 @@
 """From a wall file to the rigid block model that is asked for; its size and scarce contacts."""
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
-from functools import partial
 from types import MappingProxyType
 from typing import Any
 
@@ -144,49 +143,37 @@ def _overlapping(wall: GivenWall) -> tuple[Notice, ...]:
 def _with_closed_gaps(
     wall: GivenWall, labels: Labels, mu: float, asked: ModelRequest
 ) -> ModelledWall:
+    """Close gaps up to a width, or settle stones; say F_LR so, and in brackets otherwise.
+
+    That is with half and twice the width, or with stones pushed to either side.
+    """
     if asked.contacts != "pixels":
         what = "--close-gaps works only with --contacts pixels."
         raise UsageError("E138", what, cure="Leave one of them out.")
     if asked.close_gaps == "auto":
         return _with_swept_gaps(wall, labels, mu, asked)
-    reach = _reach(asked.close_gaps or "")
-    if reach is not None:
-        made, done = _made(wall, labels, model_with_closed_gaps(labels, reach, mu)), ""
-    else:
-        settled, moved = settle_gaps(labels)
-        made = _made(wall, settled, model_from_labels(settled, mu), moved)
+    if asked.close_gaps == "settle":
+        shown, moved = settle_gaps(labels)
         farthest = max((max(abs(dx), abs(dy)) for dx, dy in moved.values()), default=0)
         done = f"{counted(len(moved), 'stone')} lowered by up to {farthest} px; "
-    spread = gap_spread(labels, reach, mu, partial(_resistance, asked))
-    return replace(made, remarks={"gaps": f"{done}{spread}"}, joints="drawn")
-
-
-def gap_spread(
-    labels: Labels,
-    reach_px: float | None,
-    mu: float = 0.58,
-    analyse: Callable[[RigidBlockModel], LateralResistance] = lateral_resistance,
-) -> str:
-    """Say F_LR with gaps closed at a reach, and in brackets at half and twice of it, or settled.
-
-    `reach_px` is above 0; None settles stones, and compares with stones pushed to either side.
-    The sentence has no full stop.
-    """
-    if reach_px is None:
-        models = {
-            "stones settled": model_from_labels(settle_gaps(labels)[0], mu),
+        found = {
+            "stones settled": model_from_labels(shown, mu),
             "stones pushed left": model_from_labels(settle_gaps(labels, "left")[0], mu),
             "stones pushed right": model_from_labels(settle_gaps(labels, "right")[0], mu),
         }
     else:
-        models = {
-            f"gaps up to {reach:g} px closed": model_with_closed_gaps(labels, reach, mu)
-            for reach in (reach_px, reach_px / 2.0, 2.0 * reach_px)
+        reach, shown, moved, done = _reach(asked.close_gaps or ""), labels, {}, ""
+        found = {
+            f"gaps up to {width:g} px closed": model_with_closed_gaps(labels, width, mu)
+            for width in (reach, reach / 2.0, 2.0 * reach)
         }
     chosen, *others = (
-        f"{_f_lr_words(analyse(picture.model))} with {name}" for name, picture in models.items()
+        f"{_f_lr_words(_resistance(asked, picture.model))} with {name}"
+        for name, picture in found.items()
     )
-    return f"F_LR {chosen} ({', '.join(others)})"
+    made = _made(wall, shown, next(iter(found.values())), moved)
+    remarks = {"gaps": f"{done}F_LR {chosen} ({', '.join(others)})"}
+    return replace(made, remarks=remarks, joints="drawn")
 
 
 def _f_lr_words(both: LateralResistance) -> str:
@@ -280,10 +267,8 @@ def _resistance(asked: ModelRequest, model: RigidBlockModel) -> LateralResistanc
     return lateral_resistance(model, loads)
 
 
-def _reach(text: str) -> float | None:
-    """Read the width of `--close-gaps`; None to settle."""
-    if text == "settle":
-        return None
+def _reach(text: str) -> float:
+    """Read the width of `--close-gaps`."""
     try:
         reach = float(text.removesuffix("px"))
     except ValueError:
