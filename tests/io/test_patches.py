@@ -12,7 +12,7 @@ from scipy import ndimage
 from drystone.errors import LabelImageError
 from drystone.io.images import Picture
 from drystone.io.labels import Census, to_ids
-from drystone.io.outlines_in.model import Area, PlacedMask, filled_area, united
+from drystone.io.outlines_in.model import Area, OutlinedStone, PlacedMask, filled_area, pixels_of
 from drystone.io.patches import cut, enclosed, neck_width_px
 from drystone.io.read_stones import ReadSettings, read_stones
 from drystone.kernels.ids import numbered
@@ -233,8 +233,8 @@ def test_halves_of_a_polygon_share_no_pixel_and_leave_none(tens, data):
 def test_what_holds_no_centre_is_nothing_and_masks_are_united():
     for ring in ([[0.6, 0.6], [0.9, 0.6], [0.9, 0.9]], [[0.0, 0.0], [9.0, 0.0], [4.0, 0.0]]):
         assert filled_area(Area((np.array(ring),))) is None
-    assert united([]) is None
+    assert pixels_of(OutlinedStone(1)) is None
     one, other = (PlacedMask(np.ones((2, 3), bool), row, col) for row, col in ((5, 5), (6, 7)))
-    union = united([one, other])
+    union = pixels_of(OutlinedStone(1, masks=(one, other)))
     assert (union.row, union.col, union.mask.shape) == (5, 5, (3, 5))
     assert union.mask.sum() == 6 + 6 - 1

@@ -165,19 +165,10 @@ def read_npz(data: bytes, max_px: int) -> NDArray[Any] | OutlineFile:
 
     The only array, or that of the name labels, is returned as it is; else each is a stone.
     """
-    found = {
-        name.removesuffix(".npy"): array_of(member, max_px)
-        for name, member in _members(data, max_px).items()
-    }
-    alone = found.get("labels", next(iter(found.values())) if len(found) == 1 else None)
-    return _masks(found, max_px) if alone is None else np.asarray(alone)
-
-
-def _members(data: bytes, max_px: int) -> dict[str, bytes]:
-    """Unpack the arrays of an archive, of which the sizes are added up first."""
     with foreign(_broken):
         archive = zipfile.ZipFile(io.BytesIO(data))
         entries = archive.infolist()
+    # Before anything is unpacked.
     total, most = sum(entry.file_size for entry in entries), _BYTES_PER_PX * max_px
     if total > most:
         raise too_large(
@@ -185,14 +176,16 @@ def _members(data: bytes, max_px: int) -> dict[str, bytes]:
             "Give arrays of fewer or smaller values; only in Python can the limit be raised "
             "(max_image_mpx).",
         )
-    found = {}
+    unpacked = {}
     for entry in entries:
         # Of others zipfile unpacks all that there is, whatever size they name.
         if entry.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
             raise _broken("it is packed as NumPy packs none")
         with foreign(_broken), archive.open(entry) as member:
-            found[entry.filename] = member.read(entry.file_size)
-    return found
+            unpacked[entry.filename] = member.read(entry.file_size)
+    found = {name.removesuffix(".npy"): array_of(one, max_px) for name, one in unpacked.items()}
+    alone = found.get("labels", next(iter(found.values())) if len(found) == 1 else None)
+    return _masks(found, max_px) if alone is None else np.asarray(alone)
 
 
 def _broken(why: str) -> InputError:

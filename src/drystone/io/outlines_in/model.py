@@ -320,24 +320,19 @@ def filled_area(area: Area) -> PlacedMask | None:
 
 def trimmed(placed: PlacedMask) -> PlacedMask | None:
     """Cut a mask to its bounding box; None when it has no pixel."""
-    rows = np.flatnonzero(placed.mask.any(axis=1))
+    rows, cols = (np.flatnonzero(placed.mask.any(axis=axis)) for axis in (1, 0))
     if not len(rows):
         return None
-    cols = np.flatnonzero(placed.mask.any(axis=0))
     inside = placed.mask[rows[0] : rows[-1] + 1, cols[0] : cols[-1] + 1]
     row, col = placed.row + int(rows[0]), placed.col + int(cols[0])
     return PlacedMask(np.ascontiguousarray(inside), row, col)
 
 
-def united(masks: list[PlacedMask]) -> PlacedMask | None:
-    """Return the union of masks; None without any."""
-    if len(masks) < 2:
-        return masks[0] if masks else None
-    sides = [mask.sides for mask in masks]
-    top, left = np.min(sides, axis=0)[:2].tolist()
-    bottom, right = np.max(sides, axis=0)[2:].tolist()
-    room = np.broadcast_to(np.False_, (bottom - top, right - left))
-    return covered(PlacedMask(room, top, left), masks)
+def room_around(masks: Sequence[PlacedMask], kind: type[np.generic] = np.bool_) -> PlacedMask:
+    """Return zeros on the box around masks, of which there is one at least."""
+    sides = np.array([mask.sides for mask in masks])
+    (top, left), (bottom, right) = sides[:, :2].min(axis=0), sides[:, 2:].max(axis=0)
+    return PlacedMask(np.zeros((bottom - top, right - left), kind), int(top), int(left))
 
 
 def covered(place: PlacedMask, masks: Iterable[PlacedMask]) -> PlacedMask:
@@ -352,7 +347,10 @@ def covered(place: PlacedMask, masks: Iterable[PlacedMask]) -> PlacedMask:
 def pixels_of(stone: OutlinedStone) -> PlacedMask | None:
     """Return the pixels of a stone whose outlines are in px, y down; None when it has none."""
     filled = (filled_area(area) for area in stone.areas)
-    return united([*(mask for mask in filled if mask is not None), *stone.masks])
+    masks = [*(mask for mask in filled if mask is not None), *stone.masks]
+    if len(masks) < 2:
+        return masks[0] if masks else None
+    return covered(room_around(masks), masks)
 
 
 def _add_crossings(turns: NDArray[np.int32], ring: Points, top: int, left: int) -> None:

@@ -12,7 +12,7 @@ from scipy import ndimage
 
 from drystone.errors import Notice
 from drystone.io.files import MANY, listed, short, too_large
-from drystone.io.outlines_in.model import covered
+from drystone.io.outlines_in.model import covered, room_around
 from drystone.io.patches import PlacedMask, enclosed
 
 INSIDE = 0.8
@@ -116,9 +116,7 @@ def of_one_picture(masks: Sequence[PlacedMask]) -> bool:
 
     Those lie all over each other, where masks of one picture lie beside or in each other.
     """
-    sides = np.array([mask.sides for mask in masks]).reshape(-1, 4)
-    (above, before), (below, behind) = sides[:, :2].min(axis=0), sides[:, 2:].max(axis=0)
-    depth = PlacedMask(np.zeros((below - above, behind - before), np.uint16), above, before)
+    depth = room_around(masks, np.uint16)
     for mask in masks:
         here, there = depth.shared(mask)
         here += there

@@ -62,32 +62,22 @@ class Subpath(NamedTuple):
 
 def subpaths(data: str) -> list[Subpath]:
     """Return the lines of path data."""
-    pen = _Pen()
-    for command, numbers in _segments(data):
-        pen.draw(command, numbers)
-    pen.end(closed=False)
-    return pen.done
-
-
-def _segments(data: str) -> Iterator[tuple[str, list[float]]]:
-    """Yield commands with their numbers, repeated ones one by one."""
-    parts = _COMMAND.split(data)
-    if parts[0].strip():
-        raise ValueError(f"path data begins with {parts[0].strip()[:20]!r}")
-    for command, text in zip(parts[1::2], parts[2::2], strict=True):
+    pen, (before, *parts) = _Pen(), _COMMAND.split(data)
+    if before.strip():
+        raise ValueError(f"path data begins with {before.strip()[:20]!r}")
+    for command, text in zip(parts[::2], parts[1::2], strict=True):
         count = _ARGUMENTS[command.upper()]
         numbers = _numbers(text, arc=command in "Aa")
-        if count == 0:
-            if numbers:
-                raise ValueError("numbers after z")
-            yield command, []
-            continue
-        if not numbers or len(numbers) % count:
+        if not count and numbers:
+            raise ValueError("numbers after z")
+        if count and (not numbers or len(numbers) % count):
             raise ValueError(f"{command} has {len(numbers)} numbers, not a multiple of {count}")
-        for start in range(0, len(numbers), count):
+        for start in range(0, len(numbers) or 1, count or 1):
             # What follows the first pair of a move is a line.
             later = {"M": "L", "m": "l"}.get(command, command) if start else command
-            yield later, numbers[start : start + count]
+            pen.draw(later, numbers[start : start + count])
+    pen.end(closed=False)
+    return pen.done
 
 
 def _numbers(text: str, *, arc: bool) -> list[float]:
