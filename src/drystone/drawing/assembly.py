@@ -329,13 +329,12 @@ def touched_by(block: int, model: RigidBlockModel) -> list[int]:
 
 def scaled(model: RigidBlockModel, factor: float) -> RigidBlockModel:
     """Return a model in another unit of length; friction and what carries what stay."""
-    blocks = []
-    for block in model.blocks:
-        x, y = block.centroid
-        moved = (x * factor, y * factor)
-        blocks.append(replace(block, area=block.area * factor**2, centroid=moved))
+    blocks = tuple(
+        replace(one, area=one.area * factor**2, centroid=(x * factor, y * factor))
+        for one, (x, y) in ((block, block.centroid) for block in model.blocks)
+    )
     faces = tuple(replace(face, points=face.points * factor) for face in model.interfaces)
-    return RigidBlockModel(tuple(blocks), faces, model.mu)
+    return RigidBlockModel(blocks, faces, model.mu)
 
 
 def scaled_resistance(resistance: LateralResistance, factor: float) -> LateralResistance:

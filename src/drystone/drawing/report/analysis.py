@@ -1,7 +1,7 @@
 """A wall that was analysed: pictures, and the report with the wall to look around in."""
 
 import csv
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import asdict
 from importlib.metadata import version
 from io import StringIO
@@ -10,14 +10,14 @@ from typing import Literal
 
 from drystone.drawing.assembly import scaled, scaled_resistance
 from drystone.drawing.canvas import save
-from drystone.drawing.outlines import Loop, wall_regions
+from drystone.drawing.outlines import wall_regions
 from drystone.drawing.pictures.curves import plot_friction
 from drystone.drawing.pictures.forces import plot_contacts, plot_forces
 from drystone.drawing.pictures.mechanism import plot_mechanism, save_mechanism_animation
 from drystone.drawing.report.html import write_report
 from drystone.drawing.report.viewer_data import view_of_wall
 from drystone.drawing.words import analysis, content
-from drystone.drawing.words.analysis import Card, RangeCard, Shapes
+from drystone.drawing.words.analysis import Card, RangeCard
 from drystone.kernels.polygons import area_and_centroid
 from drystone.statics.loads import Loads
 from drystone.statics.model import RigidBlockModel
@@ -72,9 +72,13 @@ def _write_report(folder: Path, card: Card, loads: Loads, per_unit_m: float | No
     save(axes.figure, folder / analysis.FRICTION)
     unit: Literal["px", "m", "units"] = "units" if wall.names.noun == "block" else "px"
     if per_unit_m is not None:
-        unit = "m"
-        shapes, model = in_metres(shapes, model, per_unit_m)
+        unit, model = "m", scaled(model, per_unit_m)
         resistance = scaled_resistance(resistance, per_unit_m)
+        outer = {
+            region.id: max(region.loops, key=lambda loop: area_and_centroid(loop)[0])
+            for region in wall_regions(shapes)
+        }
+        shapes = {block: loop * per_unit_m for block, loop in outer.items()}
     friction = [
         (f"with mu = {at.mu:g}", f"load multipliers: left {content.number(at.alpha_left)}, "
          f"right {content.number(at.alpha_right)}")
@@ -95,17 +99,6 @@ def _write_report(folder: Path, card: Card, loads: Loads, per_unit_m: float | No
     view["inputs"] = [list(row) for row in (*rows, ("cite", cite))]
     view["notices"] = [asdict(notice) for notice in wall.notices]
     write_report(folder / analysis.REPORT, view, pictures=folder)
-
-
-def in_metres(
-    shapes: Shapes, model: RigidBlockModel, per_unit_m: float
-) -> tuple[Mapping[int, Loop], RigidBlockModel]:
-    """Return the outer outlines of blocks and their model, in metres."""
-    outer = {
-        region.id: max(region.loops, key=lambda loop: area_and_centroid(loop)[0]) * per_unit_m
-        for region in wall_regions(shapes)
-    }
-    return outer, scaled(model, per_unit_m)
 
 
 def _full_names(rows: Iterable[tuple[str, str]]) -> Iterator[tuple[str, str]]:
