@@ -21,29 +21,36 @@ class RaySums:
     def __init__(self, occupied: Mask) -> None:
         self.height, self.width = occupied.shape
         self._occupied = occupied
+        # First row with a pixel: above it tables need no sums.
+        self._top = int(np.argmax(occupied.any(axis=1))) if occupied.any() else self.height
 
     @cached_property
     def _along(self) -> Ints:
         """Pixels left of each column, in each row."""
-        return self._table(np.cumsum(self._occupied, axis=1, dtype=np.int32))
+        along, top = self._table(), self._top
+        np.cumsum(self._occupied[top:], axis=1, dtype=np.int32, out=along[top:, 1:])
+        return along
 
     @cached_property
     def _below(self) -> Ints:
         """Pixels left of each column, in each row and all under it; in the end none."""
         below = np.zeros((self.height + 1, self.width + 1), np.int32)
-        np.cumsum(self._along[::-1], axis=0, out=below[-2::-1])
+        for row in range(self.height - 1, self._top - 1, -1):
+            np.add(below[row + 1], self._along[row], out=below[row])
+        below[: self._top] = below[self._top]
         return below
 
     @cached_property
     def _ends(self) -> Ints:
         """Column after the last pixel left of each column, in each row."""
         columns = np.arange(1, self.width + 1, dtype=np.int32)
-        return self._table(np.maximum.accumulate(self._occupied * columns, axis=1))
+        ends, top = self._table(), self._top
+        last = self._occupied[top:] * columns
+        np.maximum.accumulate(last, axis=1, out=ends[top:, 1:])
+        return ends
 
-    def _table(self, numbers: Ints) -> Ints:
-        table = np.zeros((self.height, self.width + 1), np.int32)
-        table[:, 1:] = numbers
-        return table
+    def _table(self) -> Ints:
+        return np.zeros((self.height, self.width + 1), np.int32)
 
     def _at(self, positions: Positions) -> Longs:
         """Return where positions are in the tables."""
