@@ -142,6 +142,10 @@ def test_a_polygon_has_the_area_and_centroid_that_shapely_finds(corners):
     assert area_and_centroid(np.asfortranarray(corners)) == (area, x, y)
 
 
+def test_what_has_no_area_has_no_centroid():
+    assert np.isnan(area_and_centroid(np.zeros((3, 2)))[1:]).all()
+
+
 @given(st.lists(rings(), max_size=4), st.lists(rings(), max_size=3))
 def test_polygons_that_are_added_follow_the_others(some, more):
     both = no_polygons().added(some).added(more)

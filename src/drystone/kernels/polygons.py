@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from itertools import accumulate
 from typing import NamedTuple
@@ -136,7 +137,7 @@ def mirrored_polygon(corners: Points, width: float) -> Points:
 
 
 def area_and_centroid(corners: Points) -> tuple[float, float, float]:
-    """Return the area and the centroid (x, y) of a counter-clockwise polygon.
+    """Return the area and the centroid (x, y) of a counter-clockwise polygon; NaN without area.
 
     Examples
     --------
@@ -161,5 +162,5 @@ def area_and_centroid(corners: Points) -> tuple[float, float, float]:
         sum_x += (before_x + x) * cross
         sum_y += (before_y + y) * cross
         before_x, before_y = x, y
-    scale: cython.double = 3.0 * twice
+    scale: cython.double = 3.0 * twice if twice != 0.0 else math.nan
     return twice / 2.0, first_x + sum_x / scale, first_y + sum_y / scale
