@@ -298,7 +298,7 @@ def test_a_plan_is_laid_and_the_rest_goes_on_top(first_plan, yard):
 def test_lower_courses_stay(change, first_plan, yard, monkeypatch):
     begun = scenes.watched(monkeypatch, by_courses, "lay")
     ends, changed = first_plan.courses.ends, set[int]()
-    for seed in range(4):
+    for seed in range(6):
         new = change(first_plan, yard, rng(seed))
         check(new, yard)
         same = [a == b for a, b in zip(poses(new), poses(first_plan), strict=False)]

@@ -115,7 +115,7 @@ def test_without_errors_it_is_the_wall_of_open_loop(groups):
 
 
 def test_fewer_walls_lose_a_stone_than_in_open_loop():
-    closed, plain = (runs(TOWER, HAND, 16, once) for once in (rehearse_closed, rehearse))
+    closed, plain = (runs(TOWER, 0.04, 16, once) for once in (rehearse_closed, rehearse))
     assert sum(map(bool, map(fallen, plain))) >= 3
     assert sum(map(bool, map(fallen, closed))) == 0
     assert any(run.again for run in closed)
