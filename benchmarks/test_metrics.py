@@ -36,7 +36,7 @@ def test_paths_slowly(timer: Timer, scene: Scene) -> None:
         pytest.skip("takes longer than everything else together")
     joint = joint_mask(frame_wall(scene.wall.labels).labels)
     row = Row(PATHS, scene.name, scene.pixels, "Dijkstra in Python")
-    timer.times(1, row, lambda: (naive.vertical_lengths(joint), naive.vertical_lengths(joint.T)))
+    timer.times(1, row, lambda: [naive.vertical_arrangement(each) for each in (joint, joint.T)])
 
 
 def test_measures(timer: Timer, scene: Scene) -> None:

@@ -1,5 +1,7 @@
 """Cutting out, filling, holes and necks by slow twins, and the numbers of split pieces."""
 
+from collections import Counter
+
 import numpy as np
 import pytest
 import shapely
@@ -26,7 +28,7 @@ shapes = array_shapes(min_dims=2, max_dims=2, max_side=12)
 def test_cut_puts_every_pixel_where_it_was(labels):
     census = Census(*numbered(labels))
     patches = cut(census.index, census.values)
-    assert {patch.id: patch.area_px for patch in patches} == naive.areas(labels)
+    assert {patch.id: patch.area_px for patch in patches} == Counter(labels[labels > 0].tolist())
     for patch in patches:
         rows = slice(patch.row, patch.row + patch.mask.shape[0])
         cols = slice(patch.col, patch.col + patch.mask.shape[1])
@@ -96,7 +98,10 @@ def test_ids_of_colours(picture):
     ids = to_ids(Picture(picture), 0).ids
     colours = {tuple(pixel) for row in picture.tolist() for pixel in row}
     assert len(np.unique(ids)) == len(colours)
-    expected = [[naive.colour_id(*pixel) for pixel in row] for row in picture.tolist()]
+    expected = [
+        [r if r == g == b else r + 256 * g + 65536 * b for r, g, b in row]
+        for row in picture.tolist()
+    ]
     if len(set(np.ravel(expected).tolist())) == len(colours):
         np.testing.assert_array_equal(ids, expected)
 

@@ -11,12 +11,9 @@ def coverage(corners):
     shape = shapely.Polygon(corners)
     left, bottom = (math.floor(value) for value in shape.bounds[:2])
     right, top = (math.ceil(value) for value in shape.bounds[2:])
-    shares = np.zeros((max(top - bottom, 1), max(right - left, 1)))
-    for row in range(shares.shape[0]):
-        for col in range(shares.shape[1]):
-            x, y = left + col, bottom + shares.shape[0] - 1 - row
-            shares[row, col] = shapely.box(x, y, x + 1, y + 1).intersection(shape).area
-    return shares, left, bottom
+    y, x = np.mgrid[bottom : max(top, bottom + 1), left : max(right, left + 1)]
+    shares = shapely.area(shapely.intersection(shapely.box(x, y, x + 1, y + 1), shape))
+    return shares[::-1], left, bottom
 
 
 def newly_filled(total, shares):

@@ -4,6 +4,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from shapely import affinity
+
+from tests.naive.raster import polygon_of
 
 
 @dataclass(frozen=True)
@@ -34,13 +37,9 @@ def painted(shape, mask, row, col):
 
 
 def shape_factor(mask, angle_deg):
-    """Eq. 3: pixels over the box of all their corners, turned."""
-    cells = [(x, y) for y, row in enumerate(mask[::-1]) for x, there in enumerate(row) if there]
-    cos, sin = math.cos(math.radians(angle_deg)), math.sin(math.radians(angle_deg))
-    corners = [(x + i, y + j) for x, y in cells for i in (0, 1) for j in (0, 1)]
-    across = [x * cos - y * sin for x, y in corners]
-    up = [x * sin + y * cos for x, y in corners]
-    return len(cells) / ((max(across) - min(across)) * (max(up) - min(up)))
+    """Eq. 3: pixels over the box of all of them, turned."""
+    left, low, right, high = affinity.rotate(polygon_of(mask), angle_deg).bounds
+    return mask.sum() / ((right - left) * (high - low))
 
 
 def dice_score(occupied, stone):

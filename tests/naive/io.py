@@ -5,11 +5,6 @@ from scipy.spatial.distance import cdist
 from skimage.measure import label
 
 
-def components(mask):
-    """8-connected components, numbered by their first pixel in row order."""
-    return label(mask, connectivity=2, return_num=True)
-
-
 def holes(mask):
     """Pixels outside the mask that no 4-connected way leads out of."""
     air = np.pad(~mask, 1, constant_values=True)
@@ -28,16 +23,6 @@ def neck_width(mask):
         if sum(part.sum() >= 0.15 * (depth > half).sum() for part in thick) > 1:
             return 2 * half
     return None
-
-
-def colour_id(red, green, blue):
-    """DESIGN 4.1, one pixel."""
-    return red if red == green == blue else red + 256 * green + 65536 * blue
-
-
-def areas(labels):
-    """Pixels of every id but 0."""
-    return {int(i): int((labels == i).sum()) for i in np.unique(labels) if i}
 
 
 def index_of(labels):

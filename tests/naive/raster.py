@@ -12,12 +12,8 @@ from drystone.kernels.raster import rotation
 
 def polygon_of(mask):
     """The pixel squares of a mask, y up from its bottom-left corner."""
-    height = mask.shape[0]
-    squares = [
-        shapely.box(col, height - row - 1, col + 1, height - row)
-        for row, col in zip(*np.nonzero(mask), strict=True)
-    ]
-    return shapely.union_all(squares)
+    y, x = np.nonzero(mask[::-1])
+    return shapely.union_all(shapely.box(x, y, x + 1, y + 1))
 
 
 def coverage(mask, centre, angle_deg, scale, phase, window):
@@ -27,13 +23,8 @@ def coverage(mask, centre, angle_deg, scale, phase, window):
     polygon = affinity.scale(polygon, scale, scale, origin=(0, 0))
     polygon = affinity.translate(polygon, *phase)
     left, bottom, right, top = window
-    cells = [
-        shapely.box(x, y, x + 1, y + 1)
-        for y in range(top - 1, bottom - 1, -1)
-        for x in range(left, right)
-    ]
-    areas = shapely.area(shapely.intersection(np.array(cells), polygon))
-    return np.asarray(areas, float).reshape(top - bottom, right - left)
+    y, x = np.mgrid[bottom:top, left:right]
+    return shapely.area(shapely.intersection(shapely.box(x, y, x + 1, y + 1), polygon))[::-1]
 
 
 def second_moment_eccentricity(mask):
@@ -91,11 +82,11 @@ def rasterised_to_area(mask, centre, angle_deg, scale, phase, area):
     return rasterised(mask, centre, angle_deg, scale, best), best
 
 
-def pieces(pixels):
-    """Count the pieces of some pixels, joined at edges or corners."""
+def pieces(pixels, joined=((1, 1, 1),) * 3):
+    """Count the pieces of some pixels, joined at edges or corners, or as is asked for."""
     if not pixels:
         return 0
     places = np.array(sorted(pixels))
     image = np.zeros(np.ptp(places, axis=0) + 1, bool)
     image[tuple((places - places.min(axis=0)).T)] = True
-    return ndimage.label(image, np.ones((3, 3)))[1]
+    return ndimage.label(image, joined)[1]

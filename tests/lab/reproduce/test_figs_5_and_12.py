@@ -14,6 +14,7 @@ from drystone.drawing.palette import cluster_colour
 from drystone.poses import PoseBook
 from drystone_lab.reproduce import fig5, method
 from tests.lab.reproduce.small_walls import RUBBLE, built, context, gids, of, rows
+from tests.naive.contacts import directed_edges
 
 
 @pytest.fixture(scope="module")
@@ -95,22 +96,6 @@ def labels(folder):
     return method.three_stones(built(folder, RUBBLE)[-1].stage.after)
 
 
-def naive_edges(labels):
-    """Pixel pairs side by side or above each other that belong to different blocks."""
-    height, width = labels.shape
-    found = set()
-    for row, col in np.argwhere(labels > 0).tolist():
-        here, x, y = int(labels[row, col]), col + 1, height - row
-        right = int(labels[row, x]) if x < width else 0
-        if right and here != right:
-            found.add(((x, y - 1), (x, y)) if here > right else ((x, y), (x, y - 1)))
-        below = int(labels[row + 1, col]) if row + 1 < height else -1
-        if below and below != here:
-            ends = ((col, y - 1), (col + 1, y - 1))
-            found.add(ends if here > below else ends[::-1])
-    return found
-
-
 def test_edges_are_where_pixels_of_two_blocks_meet_and_interfaces_end_on_their_corners(
     labels, outputs
 ):
@@ -118,8 +103,9 @@ def test_edges_are_where_pixels_of_two_blocks_meet_and_interfaces_end_on_their_c
         tuple(map(tuple, edge)) for edge in np.stack(method.boundary_edges(labels), 1).tolist()
     ]
     assert len(found) == len(set(found)) > 10
-    assert set(found) == naive_edges(labels)
-    corners = {point for edge in naive_edges(labels) for point in edge}
+    expected = set().union(*directed_edges(labels).values())
+    assert set(found) == expected
+    corners = {point for edge in expected for point in edge}
     table = rows(outputs["fig12"], "interfaces")
     for row in table:
         ends = (row["x0"], row["y0"]), (row["x1"], row["y1"])

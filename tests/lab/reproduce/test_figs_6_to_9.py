@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
+from numpy.lib.stride_tricks import sliding_window_view
+from scipy import ndimage
 
 from drystone.model.placement import Placement, Wedge
 from drystone.model.pose import PosedStone
@@ -18,8 +20,8 @@ from drystone.stabilise.stabilise import Support
 from drystone_lab.reproduce import fig6_8, fig9
 from drystone_lab.reproduce.construction import Moment, RestingPlace, amid_course
 from tests.lab.reproduce.small_walls import RUBBLE, SHARP, built, gids, of, rows
-from tests.naive import indices as naive
-from tests.naive.rays import local_filling_ratio
+from tests.naive.overlap import overlaps
+from tests.naive.placement import all_positions, eq12
 from tests.naive.support import rests_stably
 
 
@@ -63,12 +65,11 @@ def test_places_are_all_at_which_a_stone_rests(amid, places):
     moment = amid.moment
     posed = moment.workshop.poses(moment.remaining[0])[0]
     occupied, mask = moment.wall.occupied, posed.mask
-    height, width = occupied.shape
     expected = {
         (row, col)
-        for row in range(height - mask.shape[0] + 1)
-        for col in range(0, width - mask.shape[1] + 1, EVERY)
-        if not np.any(occupied[row : row + mask.shape[0], col : col + mask.shape[1]] & mask)
+        for row, col in all_positions(occupied, mask)
+        if col % EVERY == 0
+        and not overlaps(occupied, mask, row, col)
         and rests_stably(occupied, mask, row, col, col + posed.anchor[0], 0.0)
     }
     found = {(p.row, p.col) for p in places if p.posed is posed}
@@ -158,16 +159,10 @@ def trial(amid):
 def naive_maps(occupied, mask):
     """Position by position: overlap with the landscape, and with what is beside it."""
     bounds = np.pad(occupied, 1, constant_values=True)
-    grown = bounds.copy()
-    for r, c in np.argwhere(bounds[1:-1, 1:-1]) + 1:
-        grown[[r - 1, r + 1, r, r], [c, c, c - 1, c + 1]] = True
-    grown[[1, -2]] = grown[:, [1, -2]] = True
-    shape = np.array(occupied.shape) - mask.shape + 1
-    free, floating = np.zeros(shape, bool), np.zeros(shape, bool)
-    for row, col in np.ndindex(*shape):
-        window = np.s_[row : row + mask.shape[0], col : col + mask.shape[1]]
-        free[row, col] = not np.any(occupied[window] & mask)
-        floating[row, col] = not np.any(grown[1:-1, 1:-1][window] & mask)
+    cross = ndimage.generate_binary_structure(2, 1)
+    grown = ndimage.maximum_filter(bounds, footprint=cross)[1:-1, 1:-1]
+    scenes = (sliding_window_view(scene, mask.shape) for scene in (occupied, grown))
+    free, floating = (~scene[..., mask].any(axis=-1) for scene in scenes)
     return free, floating
 
 
@@ -191,11 +186,7 @@ def test_the_chosen_position_is_worth_most(outputs, trial):
     occupied = moment.wall.occupied
 
     def value(at):
-        stone = naive.painted(occupied.shape, posed.mask, *at)
-        dice = naive.dice_score(occupied, stone)
-        x_c = at[1] + posed.anchor[0]
-        filled = local_filling_ratio(occupied, posed.mask, *at)
-        return filled + (dice if dice > 0.7 else 0.0) - x_c / occupied.shape[1]
+        return eq12(occupied, posed.mask, posed.anchor[0], at, 0.7)
 
     *_, touching, best, chosen = rows(outputs["fig8"], "positions")
     assert chosen["best: left px"] == col
