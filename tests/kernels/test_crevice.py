@@ -15,10 +15,6 @@ from tests.settle.piles import piles
 CLEARANCE = 0.01
 
 
-def gap_polygon(stone, around, left, right, clearance):
-    return between(crevice(stone, around, clearance), left, right)
-
-
 def extent(polygon):
     return float(polygon[:, 0].min()), float(polygon[:, 0].max())
 
@@ -106,13 +102,13 @@ def test_no_piece_where_the_space_closes():
         (step, [box(3, 0, 7, 2)], 5.0, 0.0, False),
         (step, [box(3, 0, 7, 1.9)], 5.0, 0.0, True),
     ):
-        around = no_polygons().added(others)
-        assert (gap_polygon(outline, around, 0.5, right, clearance) is not None) == there
+        space = crevice(outline, no_polygons().added(others), clearance)
+        assert (between(space, 0.5, right) is not None) == there
 
 
 def test_what_stands_just_beside_a_line_keeps_its_distance():
     """A post whose face is half a clearance left of the piece, and one beside the stone's end."""
     posts = no_polygons().added([box(0, 0, 2, 3), box(8.05, 0, 9, 3)])
-    piece = gap_polygon(box(0, 4, 8, 6), posts, 2.05, 8.0, 0.1)
+    piece = between(crevice(box(0, 4, 8, 6), posts, 0.1), 2.05, 8.0)
     assert piece is not None
     assert shapely.Polygon(piece).distance(bodies(posts)) == pytest.approx(0.1)

@@ -110,13 +110,6 @@ def drops(profile, stone, terms, constant, count, apart_px):
     return places[0]
 
 
-def wall_of(polygons, columns, cell):
-    profile = bare(columns)
-    for index, polygon in enumerate(polygons):
-        profile = raised(profile, polygon, index, cell)
-    return profile
-
-
 def terms_of(**changes):
     """A wall of 40 x 20 px, nothing of which the others could fill; only what is given costs."""
     terms = DropTerms(
@@ -261,7 +254,9 @@ ONE, TWO, THREE = box_of(14, 0, 8, 2), box_of(22, 0, 4, 2), box_of(26, 0, 8, 2)
 )
 def test_costs_at_their_edges(name, x, polygons, cost):
     """Of a block of 8 x 6 px that comes down with its left end at x."""
-    profile, stone = wall_of(polygons, 20, 2.0), hanging(box_of(-4, -3, 8, 6), 2.0)
+    profile, stone = bare(20), hanging(box_of(-4, -3, 8, 6), 2.0)
+    for index, polygon in enumerate(polygons):
+        profile = raised(profile, polygon, index, 2.0)
     terms = terms_of(**{name: 1.0}, mean_height_px=1.0, height_px=40.0)
     places = {row[0]: row[2] for row in drops(profile, stone, terms, 0.0, 20, 0.0).tolist()}
     assert places[x] == cost

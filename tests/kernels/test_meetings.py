@@ -5,6 +5,7 @@ import pytest
 import shapely
 from hypothesis import assume, given
 from hypothesis import strategies as st
+from scipy.optimize import brentq
 
 from drystone.kernels.meetings import meetings
 from drystone.kernels.polygons import no_polygons, turn
@@ -38,14 +39,10 @@ def near(corners, other, angle, gap):
     direction = np.array([np.cos(angle), np.sin(angle)])
     solid = shapely.Polygon(other)
 
-    def distance(away):
-        return shapely.Polygon(corners + away * direction).distance(solid)
+    def too_far(away):
+        return shapely.Polygon(corners + away * direction).distance(solid) - gap
 
-    inner, outer = 0.0, 1000.0
-    for _ in range(60):
-        middle = (inner + outer) / 2
-        inner, outer = (middle, outer) if distance(middle) < gap else (inner, middle)
-    return corners + outer * direction
+    return corners + brentq(too_far, 0.0, 1000.0) * direction
 
 
 @st.composite

@@ -11,6 +11,7 @@ from drystone.kernels.polygons import area_and_centroid, no_polygons, on_grid, p
 from drystone.kernels.silhouette import pixel_hull, silhouette
 from tests.kernels.test_paths import noise
 from tests.naive.outline import inside
+from tests.polygons import moved, simple_polygons
 from tests.strategies import blobs, masks, repeatable
 
 
@@ -122,18 +123,10 @@ def test_corners_of_the_hull_are_those_of_all_pixel_squares(mask):
 
 
 places = st.floats(-1e4, 1e4, allow_nan=False)
+rings = st.builds(moved, simple_polygons(), places, places)
 
 
-@st.composite
-def rings(draw):
-    """Draw a polygon that is seen whole from a point, counter-clockwise."""
-    radii = np.array(draw(st.lists(st.floats(1.0, 20.0), min_size=3, max_size=12)))
-    angles = 2 * np.pi * np.arange(len(radii)) / len(radii)
-    way = np.column_stack([np.cos(angles), np.sin(angles)])
-    return (draw(places), draw(places)) + radii[:, None] * way
-
-
-@given(rings())
+@given(rings)
 def test_a_polygon_has_the_area_and_centroid_that_shapely_finds(corners):
     area, x, y = area_and_centroid(corners)
     near = shapely.Polygon(corners - corners[0])
@@ -146,7 +139,7 @@ def test_what_has_no_area_has_no_centroid():
     assert np.isnan(area_and_centroid(np.zeros((3, 2)))[1:]).all()
 
 
-@given(st.lists(rings(), max_size=4), st.lists(rings(), max_size=3))
+@given(st.lists(rings, max_size=4), st.lists(rings, max_size=3))
 def test_polygons_that_are_added_follow_the_others(some, more):
     both = no_polygons().added(some).added(more)
     assert len(both) == len(some + more)

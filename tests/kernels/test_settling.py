@@ -1,6 +1,7 @@
 """Letting stones go: how that ends, what rules do, scenes with a known end, and random heaps."""
 
 import math
+from bisect import bisect
 from typing import NamedTuple
 
 import numpy as np
@@ -401,13 +402,8 @@ def begins_to_rest(length, thickness):
         found = exactly(ladder, pose, [POST], length, stop=0.0, steps=1)
         return found.status == Status.RESTS and found.steps == 0
 
-    low, high = 0.3, 1.4
-    assert rests(high)
-    assert not rests(low)
-    while high - low > 1e-9:
-        middle = (low + high) / 2.0
-        low, high = (low, middle) if rests(middle) else (middle, high)
-    return high
+    assert rests(1.4)
+    return 1e-9 * bisect(range(1_400_000_000), False, 300_000_000, key=lambda n: rests(1e-9 * n))
 
 
 @pytest.mark.parametrize("thickness", [4e-5, 5.0])

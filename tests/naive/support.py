@@ -3,34 +3,28 @@
 import math
 
 import numpy as np
-from scipy import ndimage
 
 from tests.naive.overlap import overlaps
-
-
-def supported_columns(occupied, mask, row, col):
-    """Wall columns in which some pixel of the stone stands on something: rows of those edges."""
-    found = {}
-    for i, j in zip(*np.nonzero(mask), strict=True):
-        r, c = int(row + i + 1), int(col + j)
-        if r == occupied.shape[0] or occupied[r, c]:
-            found.setdefault(c, []).append(r)
-    return found
+from tests.naive.raster import pieces
 
 
 def support_ends(occupied, mask, row, col):
-    """A and B as (x, row of the edge); None when nothing supports."""
-    columns = supported_columns(occupied, mask, row, col)
+    """x of A and B, and the rows of their edges; None when nothing supports."""
+    columns = {}  # in which some pixel of the stone stands on something: rows of those edges
+    for i, j in zip(*np.nonzero(mask), strict=True):
+        r, c = int(row + i + 1), int(col + j)
+        if r == occupied.shape[0] or occupied[r, c]:
+            columns.setdefault(c, []).append(r)
     if not columns:
         return None
     first, last = min(columns), max(columns)
-    return (first, max(columns[first])), (last + 1, max(columns[last]))
+    return first, last + 1, max(columns[first]), max(columns[last])
 
 
 def rests_stably(occupied, mask, row, col, x_c, margin_px):
     """Whether the centre of mass projects inside the support, by a margin."""
     ends = support_ends(occupied, mask, row, col)
-    return ends is not None and ends[0][0] + margin_px <= x_c <= ends[1][0] - margin_px
+    return ends is not None and ends[0] + margin_px <= x_c <= ends[1] - margin_px
 
 
 def resting_row(occupied, mask, row, col, reach):
@@ -54,7 +48,8 @@ def gap_pixels(occupied, mask, at, columns, sizes):
             if len(gaps[start]) == least:
                 run = _run(gaps, start, least + slack)
                 if len(run) >= smallest:
-                    return _connected({(row, x) for x in run for row in gaps[x]})
+                    pixels = {(row, x) for x in run for row in gaps[x]}
+                    return pixels if pieces(pixels, joined=None) == 1 else None
     return None
 
 
@@ -79,13 +74,6 @@ def _run(gaps, start, highest):
     return run
 
 
-def _connected(pixels):
-    """The pixels, if edges join them all."""
-    image = np.zeros(np.max(list(pixels), axis=0) + 1, bool)
-    image[tuple(np.transpose(list(pixels)))] = True
-    return pixels if ndimage.label(image)[1] == 1 else None
-
-
 def rotated(occupied, trial, book, settings):
     """Turn a stone about the nearer end of its support until it rests: pose, and points used."""
     pose = trial
@@ -96,10 +84,11 @@ def rotated(occupied, trial, book, settings):
         if side is None or pivots == settings.max_pivots:
             return None
         start, step = pose, 0
-        pivot = support_end(occupied, start, side)
+        ends, near = support_ends(occupied, start[0].mask, *start[1:]), settings.new_pivot_px
+        pivot = ends[0::2] if side < 0 else ends[1::2]
         while pose == start or (
             fall(occupied, pose, settings) == side
-            and abs(support_end(occupied, pose, side)[0] - pivot[0]) <= settings.new_pivot_px
+            and abs(support_ends(occupied, pose[0].mask, *pose[1:])[side > 0] - pivot[0]) <= near
         ):
             step += 1
             angle = start[0].angle_deg - side * step * settings.step_deg
@@ -137,11 +126,4 @@ def fall(occupied, pose, settings):
     x_c, margin = col + posed.anchor[0], settings.margin * posed.width_px
     if rests_stably(occupied, posed.mask, row, col, x_c, margin):
         return 0
-    return -1 if x_c - ends[0][0] < ends[1][0] - x_c else 1
-
-
-def support_end(occupied, pose, side):
-    """x and row of one end of the support."""
-    posed, row, col = pose
-    ends = support_ends(occupied, posed.mask, row, col)
-    return ends[0] if side < 0 else ends[1]
+    return -1 if x_c - ends[0] < ends[1] - x_c else 1
