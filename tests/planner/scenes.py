@@ -14,7 +14,6 @@ from drystone.model.wall import outlined
 from drystone.planner.deadline import Deadline
 from drystone.planner.events import Stopped
 from drystone.search.plan_result import finish as finished
-from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
 from drystone.verify.check import check_plan
 
 RUBBLE_SITE = Site(100, 36)
@@ -155,12 +154,6 @@ def kept_apart(wall, clearance_px):
     for one, other in combinations(shapes, 2):
         assert one.distance(other) >= 0.49 * clearance_px
     return shapes
-
-
-def gave_up(mu=0.58):
-    """What a solver says that gave up on both directions."""
-    left, right = (LimitResult(LimitStatus.FAILED, side) for side in ("left", "right"))
-    return LateralResistance(left, right, mu)
 
 
 def outlines(planner):

@@ -27,7 +27,8 @@ from drystone.statics.incremental import (
 )
 from drystone.statics.lp.highs import WARM
 from tests.kernels.simplex_walls import needs_kernel
-from tests.planner.scenes import RASTER, blocks, gave_up, greedy, of_rubble, rubble, watched
+from tests.planner.scenes import RASTER, blocks, greedy, of_rubble, rubble, watched
+from tests.statics.walls import gave_up
 
 
 def _attempt(settings, planner=None):

@@ -22,7 +22,7 @@ from drystone.planner.stock import Stock
 from drystone.planner.views import SideView, Views
 from drystone.settle.rest import SettlingScene
 from tests.planner import scenes
-from tests.polygons import random_polygon
+from tests.polygons import box, random_polygon
 from tests.strategies import repeatable
 
 
@@ -191,9 +191,8 @@ def test_it_moves_beside_the_neighbour_that_it_would_overlap():
 
     def beside(x, y, *boxes):
         profile = bare(60)
-        for k, (left, low, right, high) in enumerate(boxes):
-            corners = np.array([[left, low], [right, low], [right, high], [left, high]])
-            profile = raised(profile, corners, k, 1.0)
+        for k, corners in enumerate(boxes):
+            profile = raised(profile, box(*corners), k, 1.0)
         moved, same = step.proposer()._beside((x, y), stone, profile)
         assert same == y
         return moved

@@ -30,6 +30,7 @@ from drystone.settle.rest import placed_outline
 from drystone.statics.incremental import IncrementalResult
 from tests.planner import scenes
 from tests.polygons import box
+from tests.statics.walls import gave_up
 
 TOLERANCE_PX = 0.35
 QUICK = CourseSettings(evaluations=30)
@@ -330,7 +331,7 @@ def test_every_solve_that_failed_is_counted(change, first_plan, yard, monkeypatc
     def gives_up(*arguments):
         loaded = solve(*arguments)
         solved.append(len(solved) % 3 == 2)
-        return replace(loaded, grown=IncrementalResult(scenes.gave_up())) if solved[-1] else loaded
+        return replace(loaded, grown=IncrementalResult(gave_up())) if solved[-1] else loaded
 
     monkeypatch.setattr(Evaluator, "loaded", gives_up)
     known = () if change is newly_planned else (first_plan,)

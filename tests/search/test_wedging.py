@@ -35,6 +35,7 @@ from tests.kernels.simplex_walls import needs_kernel
 from tests.naive.wedging import NaiveMotion
 from tests.planner import scenes
 from tests.polygons import box
+from tests.statics.walls import gave_up
 
 LARGE = scenes.greedy(
     {
@@ -497,5 +498,5 @@ def test_a_solver_that_gives_up_is_no_reason_to_stop(monkeypatch):
     made = built((1, 30.0, 0.01))
     monkeypatch.setattr(WedgeDraft, "motion", lambda *_: None)
     assert wedged(made, 3) is made.build
-    monkeypatch.setattr(WedgeDraft, "resistance", scenes.gave_up())
+    monkeypatch.setattr(WedgeDraft, "resistance", gave_up())
     assert wedged(built((2, 30.0, 0.01), wedges={2: [box(47, 0.01, 49.5, 3.0)]}), 3).wall.wedges

@@ -16,7 +16,6 @@ from drystone.statics.limit import lateral_resistance
 from drystone.statics.loads import Loads, growing_with_height, tilting_table, weight
 from drystone.statics.lp.extremes import Solver
 from drystone.statics.model import GROUND, Interface
-from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
 from drystone.statics.sensitivity import friction_curve, friction_sensitivity
 from drystone.statics.squeeze import held_by_upright_faces
 from drystone_lab.statics_cases import arch
@@ -158,12 +157,7 @@ def test_a_solver_that_gives_up_knows_nothing(monkeypatch):
     with monkeypatch.context() as patched:
         patched.setattr(squeeze, "least_constraint", lambda *_: None)
         assert held_by_upright_faces(between_piers()) is None
-
-    def failing(model, *_, **__):
-        ends = (LimitResult(LimitStatus.FAILED, d) for d in ("left", "right"))
-        return LateralResistance(*ends, model.mu)
-
-    monkeypatch.setattr(squeeze, "lateral_resistance", failing)
+    monkeypatch.setattr(squeeze, "lateral_resistance", lambda *_, **__: walls.gave_up())
     assert held_by_upright_faces(between_piers()) is None
 
 

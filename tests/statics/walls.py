@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from drystone.contacts.given import model_from_json
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import GROUND, RigidBlockModel
+from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
 from tests.polygons import box_of
 
 JAMS = {
@@ -141,6 +142,12 @@ def alphas(model, **how):
     """Both ends of the resistance of a wall."""
     both = lateral_resistance(model, **how)
     return both.left.alpha, both.right.alpha
+
+
+def gave_up(mu=0.58):
+    """What a solver says that gave up on both directions."""
+    left, right = (LimitResult(LimitStatus.FAILED, side) for side in ("left", "right"))
+    return LateralResistance(left, right, mu)
 
 
 def limit_load(model, direction, loads=None, **how):

@@ -13,7 +13,6 @@ from gymnasium.utils.env_checker import check_env
 
 import drystone_lab.rl
 from drystone.errors import DrystoneError, UsageError
-from drystone.generate import BrickSettings, brick_stones
 from drystone.model.site import Site
 from drystone.planner.planner import Planner
 from drystone.planner.workshop import Workshop
@@ -22,14 +21,14 @@ from drystone.selection.policies.choices import LOWEST
 from drystone.selection.policies.learned import FEATURES, features
 from drystone_lab.rl.env import WallEnv
 from drystone_lab.rl.episode import ARRIVING, KINDS, DrawSettings, Episode, draw_wall, in_order
+from tests.planner import scenes
 
 SMALL = DrawSettings(kinds=("brick", "polygon"), stones=7, size_px=12.0)
 
 
 def bricks(count=6):
     """Return bricks of 20 x 10 and a wall that the first four of them fill."""
-    settings = BrickSettings(count=count, height_px=10, aspect=2)
-    return brick_stones(settings, np.random.default_rng(1)), Site(40, 20)
+    return scenes.bricks(count), Site(40, 20)
 
 
 GIVEN = dict(zip(("stones", "site"), bricks(), strict=True))
@@ -268,7 +267,7 @@ def test_size_and_surplus_are_those_asked_for(kind):
 
 
 def test_order_keeps_every_stone():
-    stones = brick_stones(BrickSettings(count=8, halves=4), np.random.default_rng(1))
+    stones = scenes.bricks(8, halves=4)
     again = in_order(stones, np.random.default_rng(2))
     widths = [[stone.mask.shape[1] for stone in some] for some in (stones, again)]
     assert widths[0] != widths[1]

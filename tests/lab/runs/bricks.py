@@ -5,12 +5,11 @@ import signal
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-import numpy as np
-
-from drystone.generate import BrickSettings, brick_stones, lay_out
+from drystone.generate import lay_out
 from drystone.io.wall_image import write_labels
 from drystone_lab.runs.outcome import Runner
 from drystone_lab.runs.spec import RunSpec, generated
+from tests.planner import scenes
 
 SOURCE = generated("brick", 1, count=6, height_px=10, aspect=2)
 NOT_SIX = generated("brick", 1, count=-6)
@@ -50,8 +49,7 @@ def deadly(seed, once=None):
 def picture(path, count=6):
     """Write bricks as a label image."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    bricks = BrickSettings(count=count, height_px=10, aspect=2)
-    write_labels(lay_out(brick_stones(bricks, np.random.default_rng(1))), path)
+    write_labels(lay_out(scenes.bricks(count)), path)
     return path
 
 
