@@ -15,7 +15,7 @@ from skimage import measure
 from drystone.contacts.outlines import model_of_traced, outlines_of_labels
 from drystone.contacts.settled import PlacedPolygons, model_of_outlines, model_with_outlines
 from drystone.io.read_stones import read_stones
-from drystone.kernels.polygons import area_and_centroid, turn
+from drystone.kernels.polygons import area_and_centroid, no_polygons, turn
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import GROUND, Block, Interface, RigidBlockModel
 from drystone_lab.pixels import exact_model, picture_of, tilted_wall
@@ -151,8 +151,7 @@ MU = 0.58
 
 
 def model_of(*polygons, mu=MU, tolerance=0.1, setback=0.0):
-    placed = PlacedPolygons.of(enumerate(polygons, start=1))
-    return model_of_outlines(placed, mu, tolerance, setback)
+    return model_of_outlines(list(enumerate(polygons, start=1)), mu, tolerance, setback)
 
 
 def settled_wall(seed, loose, lean):
@@ -200,10 +199,10 @@ def test_blocks_and_interfaces_do_not_depend_on_how_they_are_added():
     placed = settled_wall(2, 0.01, 1e-5)
     ids = list(range(len(placed), 0, -1))
     listed = list(zip(ids, placed, strict=True))
-    whole = model_of_outlines(PlacedPolygons.of(listed), MU, 0.1, 0.0)
+    whole = model_of_outlines(listed, MU, 0.1, 0.0)
     grown = RigidBlockModel((), (), MU)
     for place in range(0, len(placed), 2):  # a stone and its wedge at a time
-        around = PlacedPolygons.of(listed[:place])
+        around = PlacedPolygons(tuple(ids[:place]), no_polygons().added(placed[:place]))
         grown = model_with_outlines(grown, listed[place : place + 2], around, 0.1, 0.0)
     assert grown.blocks == whole.blocks
     assert told(grown.interfaces) == told(whole.interfaces)

@@ -82,7 +82,7 @@ def test_pictures_are_written_where_a_mechanism_exists(tmp_path, monkeypatch):
     # Mechanisms of a wall of outlines are drawn of its outlines.
     drawn.clear()
     wall = exact_example(0.5, 50.0).wall
-    model = model_of_outlines(wall.outlines, 0.58, 0.1)
+    model = model_of_outlines(wall.outlines.blocks, 0.58, 0.1)
     write_pictures(tmp_path, wall, resistance=lateral_resistance(model, mechanism=True))
     assert {one.name for one in tmp_path.iterdir()} == {files.PICTURE, *files.MECHANISMS.values()}
     for shown, *_, ax in drawn:

@@ -350,7 +350,7 @@ def test_stones_of_a_program_can_be_checked_with_a_file_of_them(tmp_path, capsys
 def built(scale=1.0, px_per_m=None):
     """Return a wall with a wedge, and its model at another friction than that of its plan."""
     wall = exact_example(scale, px_per_m).wall
-    return wall, model_of_outlines(wall.outlines, 0.7, SETTINGS.settle.contact_px)
+    return wall, model_of_outlines(wall.outlines.blocks, 0.7, SETTINGS.settle.contact_px)
 
 
 @pytest.mark.parametrize(("scale", "px_per_m"), [(1.0, None), (0.5, 137.0)])
@@ -379,6 +379,6 @@ def test_a_wall_of_pixels_and_an_empty_one_have_no_blocks():
     with pytest.raises(ValueError, match="are their pixels"):
         blocks_to_json(example().wall, built()[1])
     wall = Wall.empty(Site.from_source(40.0, 20.0, 0.5), exact=True)
-    read = blocks_to_json(wall, model_of_outlines(wall.outlines, 0.58, 0.1))
+    read = blocks_to_json(wall, model_of_outlines(wall.outlines.blocks, 0.58, 0.1))
     assert read == {"mu": 0.58, "px_per_m": None, "blocks": [], "interfaces": []}
     assert model_from_json(read).blocks == ()

@@ -76,7 +76,7 @@ def check_wall(one):
             assert polygon.bounds[1] >= -1e-9
             for other in polygons[:i]:
                 assert polygon.intersection(other).area < 1e-9
-        model = model_of_outlines(wall.outlines, one.settings.mu, settle.contact_px)
+        model = model_of_outlines(wall.outlines.blocks, one.settings.mu, settle.contact_px)
     assert lateral_resistance(model).stable
     assert all(action.stands for action in one.build.actions)
 

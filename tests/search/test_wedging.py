@@ -112,7 +112,8 @@ def test_a_wedge_is_added_in_the_order_of_construction(wall):
         assert after.placed.polygons.polygon(at).tolist() == place.corners.tolist()
         assert after.added == ((number, place),)
         touching = draft.limits.contact_px, draft.limits.setback
-        whole = lateral_resistance(model_of_outlines(after.placed, 0.58, *touching))
+        blocks = [(i, after.placed.polygons.polygon(k)) for k, i in enumerate(after.placed.ids)]
+        whole = lateral_resistance(model_of_outlines(blocks, 0.58, *touching))
         assert after.resistance.value == pytest.approx(whole.value, abs=1e-7)
         for direction in ("left", "right"):
             side = getattr(after.resistance, direction)
@@ -155,7 +156,7 @@ def test_an_idle_wedge_is_none(wall):
         assert draft.without(model).resistance.value == after.value
     for k, wedge in enumerate(made.build.wall.wedges):
         others = [block for block in made.build.wall.outlines.blocks if block[0] != wedge.id]
-        without = lateral_resistance(model_of_outlines(PlacedPolygons.of(others))).value
+        without = lateral_resistance(model_of_outlines(others)).value
         idle = begun.analysis.resistance_with(begun.idle(wedge.id)).resistance.value
         assert (idle or 0.0) == pytest.approx(without or 0.0, abs=1e-7), k
 

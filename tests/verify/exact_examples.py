@@ -79,5 +79,5 @@ def wedge_px():
 def block_model(made):
     """Return what blocks.json beside the plan of a wall of outlines says, read again."""
     settle = SETTINGS.settle
-    model = model_of_outlines(made.wall.exact, SETTINGS.mu, settle.contact_px)
+    model = model_of_outlines(made.wall.exact.blocks, SETTINGS.mu, settle.contact_px)
     return json.loads(json.dumps(blocks_to_json(made.wall, model)))

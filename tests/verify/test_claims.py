@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from drystone.contacts.settled import PlacedPolygons, model_of_outlines
+from drystone.contacts.settled import model_of_outlines
 from drystone.physics.building import BlockMove, BuildUp, build_up, tilt_of
 from drystone.physics.scatter import TiltResult
 from drystone.physics.tilt import TiltTrial
@@ -81,7 +81,7 @@ def test_a_stack_that_claims_full_interlock_is_found_out():
     stack = build_up([[brick] for brick in bricks], 0.9)
     assert stack.stands
     tilted = tilt_of(stack)
-    honest = lateral_resistance(model_of_outlines(PlacedPolygons.of(bricks), 0.9))
+    honest = lateral_resistance(model_of_outlines(bricks, 0.9))
     assert honest.left.alpha == pytest.approx(0.5, rel=0.05)
     claimed = claiming(honest.left.alpha, honest.right.alpha)
     assert check_engine(claimed, stack, tilted) == []

@@ -8,7 +8,7 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drystone.contacts.settled import PlacedPolygons, model_of_outlines
+from drystone.contacts.settled import model_of_outlines
 from drystone.kernels.polygons import no_polygons
 from drystone.model import stone as stone_module
 from drystone.model.outline import stone_outline
@@ -44,7 +44,7 @@ WIDTH = 20.0
 def model(wedge, *more):
     """A pillar, a lower one, a slab on the first, and a wedge that may hold it."""
     blocks = [(1, box(0, 0.01, 5, 8)), (2, box(10, 0.01, 15, 5)), (7, SLAB)]
-    return model_of_outlines(PlacedPolygons.of([*blocks, (9, wedge), *more]), 0.58, 0.1)
+    return model_of_outlines([*blocks, (9, wedge), *more], 0.58, 0.1)
 
 
 def found(wedge, *more, **limits):

@@ -8,7 +8,7 @@ import numpy as np
 import shapely
 from scipy import ndimage
 
-from drystone.contacts.settled import PlacedPolygons, model_of_outlines
+from drystone.contacts.settled import model_of_outlines
 from drystone.kernels.outline import pixel_rings
 from drystone.kernels.polygons import Points
 from drystone.kernels.segments import REACH_PX, Line, fitted_lines, meeting_point, with_area
@@ -82,8 +82,8 @@ def model_of_traced(
     touch up to a gap or overlap of `CONTACT_TOLERANCE`, in the unit of the outlines.  Overlaps are
     not looked for: whoever makes outlines checks them.
     """
-    blocks = ((block, outlines[block][:-1]) for block in sorted(outlines))
-    return model_of_outlines(PlacedPolygons.of(blocks), mu, CONTACT_TOLERANCE, setback)
+    blocks = [(block, outlines[block][:-1]) for block in sorted(outlines)]
+    return model_of_outlines(blocks, mu, CONTACT_TOLERANCE, setback)
 
 
 def _rings(labels: Labels) -> dict[int, RingPiece]:

@@ -48,7 +48,7 @@ def sturdy_model_with(
 
 def sturdy_model_of(outlines: Outlines, mu: float, settings: SettleSettings) -> RigidBlockModel:
     """Return the sturdy model of a whole wall."""
-    model = model_of_outlines(outlines, mu, 0.5 * settings.contact_px, settings.setback)
+    model = model_of_outlines(outlines.blocks, mu, 0.5 * settings.contact_px, settings.setback)
     return replace(model, interfaces=slippery(model.interfaces, mu, settings.steep, GRIP))
 
 

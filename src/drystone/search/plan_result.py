@@ -214,6 +214,7 @@ def other_resistances(
             ("F_LR_double", 2.0, settle.setback),
             ("F_LR_no_setback", 1.0, 0.0),
         ):
-            model = model_of_outlines(outlines, settings.mu, share * settle.contact_px, setback)
+            tolerance = share * settle.contact_px
+            model = model_of_outlines(outlines.blocks, settings.mu, tolerance, setback)
             found[name] = lateral_resistance(model).value
     return found

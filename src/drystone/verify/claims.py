@@ -66,7 +66,7 @@ def wall_model(wall: Wall, settings: PlannerSettings) -> RigidBlockModel | None:
             return None
         return model_from_labels(wall.labels, settings.mu).model
     settle = settings.settle
-    model = model_of_outlines(wall.outlines, settings.mu, settle.contact_px, settle.setback)
+    model = model_of_outlines(wall.outlines.blocks, settings.mu, settle.contact_px, settle.setback)
     grounded = any(interface.other == GROUND for interface in model.interfaces)
     return model if grounded else None
 
