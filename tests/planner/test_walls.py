@@ -20,7 +20,7 @@ from drystone.planner.proposing import RasterProposer, StoneTrial
 from drystone.planner.settings import METHODS
 from drystone.search.goal import mean_top
 from drystone.settle.rest import placed_outline
-from drystone.verify import check_plan
+from drystone.verify.check import check_plan
 from tests.naive.planner import SlowPlanner
 from tests.planner import scenes
 from tests.strategies import repeatable

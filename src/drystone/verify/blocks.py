@@ -10,10 +10,9 @@ from drystone.contacts.given import model_from_json, polygons_from_json
 from drystone.errors import DrystoneError
 from drystone.kernels.polygons import Points
 from drystone.model.plan import Plan
-from drystone.model.steps import piece_name
+from drystone.model.steps import Problem, piece_name
 from drystone.statics.model import Interface, RigidBlockModel
 from drystone.verify.replay import Replay
-from drystone.verify.report import Problem
 
 FILE = "blocks.json"
 
@@ -96,14 +95,9 @@ def _by_pair(model: RigidBlockModel, px: float) -> dict[IdPair, list[Interface]]
 
 
 def _same(claimed: list[Interface], found: list[Interface]) -> bool:
-    """Say whether two lists hold the same contacts, in any order."""
-    left = list(found)
-    for face in claimed:
-        match = next((place for place, other in enumerate(left) if _meets(face, other)), None)
-        if match is None:
-            return False
-        del left[match]
-    return not left
+    """Say whether two lists hold the same contacts, in any order; none of `found` comes twice."""
+    met = (any(_meets(face, other) for other in claimed) for face in found)
+    return len(claimed) == len(found) and all(met)
 
 
 def _meets(one: Interface, other: Interface) -> bool:

@@ -9,16 +9,17 @@ from drystone.kernels.polygons import turn
 from drystone.model.overlap import deepest_overlap, shape_of
 from drystone.model.placement import Placement, Wedge
 from drystone.model.plan import Plan, PlanMetrics, WedgeStep
+from drystone.model.steps import Problem
 from drystone.model.stone import StoneSet
 from drystone.model.wall import Labels
 from drystone.planner.dropping import wedge_limits
 from drystone.statics.model import RigidBlockModel
 from drystone.verify import claims, pieces
 from drystone.verify.blocks import check_blocks
-from drystone.verify.claims import Reference, Stability
+from drystone.verify.claims import Reference
 from drystone.verify.lengths import source_points
 from drystone.verify.replay import Replay, replay_plan
-from drystone.verify.report import CheckReport, Problem
+from drystone.verify.report import CheckReport, PrefixAlpha
 
 
 def check_plan(
@@ -43,16 +44,16 @@ def check_plan(
     """
     replay = replay_plan(plan, stones)
     reference = Reference.of(stones, replay.settings, plan.working_scale)
-    stability = claims.check_stability(replay.stages, replay.settings)
     problems = [*claims.check_source(plan, stones), *replay.problems]
     problems += claims.check_choice(plan, replay.settings)
     problems += _check_pieces(replay, reference)
-    problems += stability.problems + tuple(_check_stages(replay, stability, reference))
+    models, prefixes, faults = _check_stages(replay, reference)
+    problems += faults
     if wall_labels is not None:
         problems += _check_image(replay, wall_labels)
     metrics: PlanMetrics | None = None
-    whole = replay.broken_at is None and None not in stability.models
-    model = stability.models[-1] if whole and stability.models else None
+    whole = replay.broken_at is None and None not in models
+    model = models[-1] if whole and models else None
     if blocks is not None and replay.exact:
         problems += check_blocks(blocks, plan, replay, model)
     if whole:
@@ -67,7 +68,7 @@ def check_plan(
         buried=tuple(stage.stone.stone for stage in replay.stages if pieces.is_buried(stage)),
         area_error=area_error,
         area_error_at=area_error_at,
-        prefixes=stability.prefixes,
+        prefixes=tuple(prefixes),
         metrics=metrics,
         notes=tuple(_notes(plan, stones, replay, wall_labels, blocks)),
         geometry=replay.settings.geometry,
@@ -92,16 +93,24 @@ def _check_pieces(replay: Replay, reference: Reference) -> list[Problem]:
     return problems
 
 
-def _check_stages(replay: Replay, stability: Stability, reference: Reference) -> list[Problem]:
-    """Verify indices and wedges of every stage."""
-    problems = []
+def _check_stages(
+    replay: Replay, reference: Reference
+) -> tuple[list[RigidBlockModel | None], list[PrefixAlpha], list[Problem]]:
+    """Verify each wall on the way, its indices and wedges; its model and what it carries."""
+    models: list[RigidBlockModel | None] = []
+    prefixes, problems = [], list[Problem]()
     unit, wall = replay.site.units_per_px, replay.wall
     settings, stock = reference.settings, reference.stock
     steps = {p.id: p.step for p in replay.pieces if isinstance(p.step, WedgeStep)}
-    stages = zip(replay.stages, stability.resistances, stability.models, strict=True)
-    for stage, resistance, model in stages:
+    for stage in replay.stages:
+        model, resistance, faults = claims.check_stability(stage, settings)
+        problems += faults
+        models.append(model)
+        alphas: tuple[float | None, float | None] = (None, None)
         if resistance is not None:
             problems += claims.check_indices(stage, resistance, reference, unit)
+            alphas = (resistance.left.alpha, resistance.right.alpha)
+        prefixes.append(PrefixAlpha(stage.last.step, *alphas))
         for wedge in stage.group.wedges:
             step, settled = steps[wedge.id], stage.group.placement.settled
             if wedge.corners is None or settled is None or wall.outlines is None:
@@ -118,7 +127,7 @@ def _check_stages(replay: Replay, stability: Stability, reference: Reference) ->
                 wall.site.extent_px[0],
                 wedge_limits(settings, stock, wall.site),
             )
-    return problems
+    return models, prefixes, problems
 
 
 def _check_image(replay: Replay, wall_labels: Labels) -> list[Problem]:
@@ -162,7 +171,7 @@ def _worst_area(replay: Replay) -> tuple[float, int | None]:
     """Return the largest share by which a stone's pixels miss its own area, and its id."""
     ids, counts = np.unique(replay.labels, return_counts=True)
     seen = dict(zip(ids.tolist(), counts.tolist(), strict=True))
-    worst, at = 0.0, None
+    errors = list[tuple[float, int]]()
     for piece in replay.pieces:
         if not isinstance(piece.item, Placement):
             continue
@@ -172,10 +181,8 @@ def _worst_area(replay: Replay) -> tuple[float, int | None]:
         own = whole * posed.scale**2
         # Pixels that two outlines share go to the one that covers more.
         area = seen.get(piece.id, 0) if replay.exact else posed.area_px
-        error = abs(area - own) / own
-        if at is None or error > worst:
-            worst, at = error, piece.id
-    return worst, at
+        errors.append((abs(area - own) / own, piece.id))
+    return max(errors, key=lambda one: one[0], default=(0.0, None))
 
 
 def _notes(

@@ -11,8 +11,8 @@ from drystone.kernels.polygons import on_grid
 from drystone.model.plan import Plan, Point
 from drystone.model.settings import flat, nested
 from drystone.model.site import MAX_SITE_PX, Site
+from drystone.model.steps import Problem
 from drystone.planner.settings import METHODS, PlannerSettings
-from drystone.verify.report import Problem
 
 _Path = tuple[str, ...]
 """Names that lead to a setting, the outer first."""

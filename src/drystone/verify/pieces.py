@@ -18,6 +18,7 @@ from drystone.model.overlap import common_parts, shape_of
 from drystone.model.placement import Wedge
 from drystone.model.plan import StoneStep, WedgeStep
 from drystone.model.site import Site
+from drystone.model.steps import Problem
 from drystone.model.stone import Stone
 from drystone.model.wall import Labels
 from drystone.model.wedge_shape import WedgeShape
@@ -27,7 +28,6 @@ from drystone.stabilise.settings import StabiliseSettings
 from drystone.statics.model import RigidBlockModel
 from drystone.verify.lengths import working_points
 from drystone.verify.replay import PENETRATION_PX, Stage
-from drystone.verify.report import Problem
 
 SAME_AREA = 1e-6
 """Outlines have the area of the pixels but for rounding, as a share of it."""
@@ -189,8 +189,7 @@ def check_settled_wedge(
 
 def check_polygon(step: WedgeStep, wedge: Wedge, site: Site) -> list[Problem]:
     """Verify that a wedge's polygon is that of its pixels, counter-clockwise (E222)."""
-    x, y = working_points(step.polygon, site).T
-    area = float(x @ np.roll(y, -1) - y @ np.roll(x, -1)) / 2
+    area, *_ = area_and_centroid(working_points(step.polygon, site))
     if abs(area - wedge.area_px) <= AREA_TOLERANCE_PX * max(1.0, wedge.area_px):
         return []
     message = (

@@ -7,8 +7,6 @@ from typing import Any, Literal
 from drystone.model.plan import PlanMetrics
 from drystone.model.steps import Problem
 
-__all__ = ["CheckReport", "PrefixAlpha", "Problem", "contradicted"]
-
 
 def contradicted(name: str, claimed: float | None, found: float | None) -> str:
     """Say that a plan claims another value than was found; None is written null, as in JSON."""

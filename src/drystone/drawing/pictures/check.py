@@ -16,12 +16,11 @@ from drystone.drawing.pictures.mechanism import motion_of
 from drystone.drawing.words.checked import PICTURE, Checked, Rehearsed
 from drystone.errors import PlanError
 from drystone.model.plan import Point
-from drystone.model.steps import piece_id
+from drystone.model.steps import Problem, piece_id
 from drystone.statics.limit import lateral_resistance
 from drystone.verify.claims import wall_model
 from drystone.verify.outlines import common_areas
 from drystone.verify.replay import replay_plan
-from drystone.verify.report import Problem
 
 MISPLACED = ("E220", "E221", "E222", "E223", "E224", "E240")
 """Problems of a stone or wedge where it lies."""

@@ -13,6 +13,7 @@ from drystone.errors import counted
 from drystone.kernels.polygons import Points
 from drystone.model.builder import BuilderErrors
 from drystone.model.plan import Plan, Point
+from drystone.model.steps import Problem
 from drystone.model.stone import StoneSet
 from drystone.physics.building import BlockMove, BuildUp
 from drystone.physics.scatter import TiltResult
@@ -20,7 +21,7 @@ from drystone.search.closed_loop import ClosedRun
 from drystone.search.rehearsal import Groups, RehearsalRun
 from drystone.verify.claims import check_engine
 from drystone.verify.outlines import PolygonGroup
-from drystone.verify.report import CheckReport, Problem
+from drystone.verify.report import CheckReport
 
 PICTURE = "check.png"  # beside a plan of which something fails
 NOT_BUILT = "not built there, as a step of the plan places nothing"
