@@ -99,7 +99,6 @@ def named(masonry):
 ])  # fmt: skip
 def test_wedges_that_no_mason_would_cut_are_named_in_stone_sizes(wedge, words, factor):
     masonry = slab_with(wedge)
-    assert masonry.median_size == 2.0
     loops = {i: loop * factor for i, loop in masonry.loops.items()}
     assert named(Masonry(loops, wedge_ids={9}, cut=True)) == words
     # Small stones are no wedges that were cut.

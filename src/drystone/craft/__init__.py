@@ -4,19 +4,9 @@
 fifteen rules (docs/craft.md).
 """
 
-from drystone.craft.finding import Case, Finding, Limit, Rule
-from drystone.craft.look import RULES, CraftReport, look
+from drystone.craft.finding import Limit
+from drystone.craft.look import RULES, look
 from drystone.craft.masonry import Masonry
 from drystone.craft.settings import CraftSettings
 
-__all__ = [
-    "RULES",
-    "Case",
-    "CraftReport",
-    "CraftSettings",
-    "Finding",
-    "Limit",
-    "Masonry",
-    "Rule",
-    "look",
-]
+__all__ = ["RULES", "CraftSettings", "Limit", "Masonry", "look"]

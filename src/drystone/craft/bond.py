@@ -84,9 +84,10 @@ def _crosses(masonry: Masonry, chain: Chain) -> Iterator[Case]:
             continue
         upper, begin = chain.joints[end], end
         four = (lower.first, lower.second, upper.first, upper.second)
-        apart = abs(float(upper.bottom[0] - lower.top[0])) / height
+        top, bottom = lower.points[-1], upper.points[0]
+        apart = abs(float(bottom[0] - top[0])) / height
         words = f"{apart:.2f} mean stone heights from joint to joint"
-        middle = 0.5 * (lower.top + upper.bottom)
+        middle = 0.5 * (top + bottom)
         plus = tuple(np.array([middle - arm, middle + arm]) for arm in 0.3 * height * np.eye(2))
         yield Case(four, round(apart, 9), words, plus, 0)
 

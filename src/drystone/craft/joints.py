@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from drystone.kernels.polygons import Points
+from drystone.kernels.profiles import Floats
 
 STEEPEST = 1.0
 """A joint that rises more than it runs is a head joint, else a bed joint: 45 degrees."""
@@ -31,6 +32,35 @@ class Scan:
     # box as from the other, so that a mirrored wall is cut in the same places.
     places: NDArray[np.float64]
     runs: tuple[tuple[Run, ...], ...]  # for each line, in order along it
+
+
+@dataclass(frozen=True, eq=False)
+class StoneSides:
+    """The lower and the upper side of a stone, column by column from left to right."""
+
+    x: Floats  # (n,)
+    low: Floats  # (n,) height of the lower side, of the lowest piece where there are several
+    high: Floats  # (n,) height of the upper side, of the highest one
+    gap: Floats  # (n,) air down to the next stone, wedge or the ground
+    spacing: float  # of columns
+
+
+def profiles(columns: Scan, stones: Collection[int], ground: float) -> dict[int, StoneSides]:
+    """Return the sides of all stones that any column cuts."""
+    found: dict[int, dict[float, tuple[float, float, float]]] = {i: {} for i in stones}
+    for x, runs in zip(columns.places.tolist(), columns.runs, strict=True):
+        top = ground
+        for run in runs:
+            if run.id in found:
+                low, _, gap = found[run.id].get(x, (run.begin, 0.0, max(0.0, run.begin - top)))
+                found[run.id][x] = low, run.end, gap
+            top = max(top, run.end)
+    sides = {}
+    for stone, cells in found.items():
+        if cells:
+            low, high, gap = np.array([*cells.values()]).T
+            sides[stone] = StoneSides(np.array([*cells]), low, high, gap, columns.spacing)
+    return sides
 
 
 def scan(outlines: Mapping[int, Points], axis: int, spacing: float) -> Scan:
@@ -79,33 +109,8 @@ class Joint:
 
     first: int  # stones to the left and right of a head joint, below and above a bed joint
     second: int
-    points: Points  # (n, 2), middle of the gap, bottom to top or left to right
-    spacing: float  # length that a point stands for
-
-    @property
-    def length(self) -> float:
-        """Height of a head joint, width of a bed joint."""
-        return len(self.points) * self.spacing
-
-    @property
-    def bottom(self) -> Points:
-        """Lower end of a head joint."""
-        return np.asarray(self.points[0] - np.array([0.0, 0.5 * self.spacing]))
-
-    @property
-    def top(self) -> Points:
-        """Upper end of a head joint."""
-        return np.asarray(self.points[-1] + np.array([0.0, 0.5 * self.spacing]))
-
-    @property
-    def x0(self) -> float:
-        """Left end of a bed joint."""
-        return float(self.points[0, 0]) - 0.5 * self.spacing
-
-    @property
-    def x1(self) -> float:
-        """Right end of a bed joint."""
-        return float(self.points[-1, 0]) + 0.5 * self.spacing
+    points: Points  # (n, 2), middle of the gap from end to end, bottom to top or left to right
+    length: float  # height of a head joint, width of a bed joint
 
 
 def joints(scanned: Scan, axis: int, widest: float, stones: Collection[int]) -> tuple[Joint, ...]:
@@ -121,13 +126,16 @@ def joints(scanned: Scan, axis: int, widest: float, stones: Collection[int]) -> 
             if gap <= widest:
                 sampled.setdefault(pair, []).append((line, middle))
     found = []
+    # A line stands for half of what is between it and the next one.
+    half = 0.5 * scanned.spacing * np.eye(2)[1 - axis]
     for pair, samples in sampled.items():
         for piece in _pieces(samples, scanned.spacing):
             if len(piece) > 1:  # else it has no direction
                 lines, middles = (np.array(column) for column in zip(*piece, strict=True))
                 places = scanned.places[lines]
                 points = np.column_stack((middles, places) if axis == 0 else (places, middles))
-                found.append(Joint(*pair, points, scanned.spacing))
+                points = np.vstack([points[0] - half, points, points[-1] + half])
+                found.append(Joint(*pair, points, len(piece) * scanned.spacing))
     return tuple(sorted(found, key=lambda one: (*one.points[0].tolist(), one.first, one.second)))
 
 
@@ -182,11 +190,9 @@ class Chain:
     @property
     def height(self) -> float:
         """From its lower to its upper end."""
-        return float(self.joints[-1].top[1] - self.joints[0].bottom[1])
+        return float(self.line[-1, 1] - self.line[0, 1])
 
     @property
     def line(self) -> Points:
         """Its middle, upwards."""
-        return np.concatenate(
-            [np.vstack([joint.bottom, joint.points, joint.top]) for joint in self.joints]
-        )
+        return np.concatenate([joint.points for joint in self.joints])

@@ -9,6 +9,7 @@ from scipy import ndimage
 
 from drystone.craft.finding import Case, Evidence, Line, worst_first
 from drystone.craft.masonry import Masonry
+from drystone.kernels.profiles import Floats
 from drystone.model.overlap import common_parts
 
 MIDDLE = 0.8
@@ -117,28 +118,17 @@ def edges(masonry: Masonry) -> list[Edge]:
 
     They come by id, the lower one first; stones that are too narrow to have edges are left out.
     """
-    profiles: dict[int, list[tuple[float, float, float]]] = {i: [] for i in masonry.stones}
-    for x, runs in zip(masonry.columns.places.tolist(), masonry.columns.runs, strict=True):
-        spans: dict[int, tuple[float, float]] = {}
-        for run in runs:
-            if run.id in profiles:
-                begin, _ = spans.get(run.id, (run.begin, run.end))
-                spans[run.id] = begin, run.end
-        for stone, (low, high) in spans.items():
-            profiles[stone].append((x, low, high))
     found = []
-    for stone, profile in profiles.items():
+    for stone, profile in masonry.profiles.items():
         x0, _, x1, _ = masonry.boxes[stone]
-        values = np.array(profile).reshape(-1, 3)
-        inner = values[np.abs(values[:, 0] - 0.5 * (x0 + x1)) <= 0.5 * MIDDLE * (x1 - x0)]
-        if len(inner) > 2:
-            found.append(_fitted(stone, "lower", inner[:, :2]))
-            found.append(_fitted(stone, "upper", inner[:, ::2]))
+        inner = np.abs(profile.x - 0.5 * (x0 + x1)) <= 0.5 * MIDDLE * (x1 - x0)
+        if inner.sum() > 2:
+            found.append(_fitted(stone, "lower", profile.x[inner], profile.low[inner]))
+            found.append(_fitted(stone, "upper", profile.x[inner], profile.high[inner]))
     return found
 
 
-def _fitted(stone: int, side: Literal["lower", "upper"], points: Line) -> Edge:
-    x, y = points.T
+def _fitted(stone: int, side: Literal["lower", "upper"], x: Floats, y: Floats) -> Edge:
     about = x - x.mean()
     slope = float(about @ (y - y.mean()) / (about @ about))
     ends = x[[0, -1]]
@@ -230,10 +220,7 @@ def without_slots(profile: Line, widest: float) -> Line:
         return profile
     # Beyond both ends nothing is: what is low there is no slot.
     around = np.pad(profile, size, constant_values=float(profile.min()))
-    raised = ndimage.maximum_filter1d(around, size, origin=0)
-    # The same window turned about, so that what has no slots stays.
-    closed = ndimage.minimum_filter1d(raised, size, origin=-((size + 1) % 2))
-    return np.asarray(closed[size:-size])
+    return np.asarray(ndimage.grey_closing(around, size)[size:-size])
 
 
 def flush_ends(masonry: Masonry) -> Evidence:

@@ -9,7 +9,7 @@ import shapely
 
 from drystone.contacts.blocks import model_from_labels
 from drystone.contacts.outlines import outlines_of_labels
-from drystone.craft.joints import Chain, Joint, Scan, joints, scan
+from drystone.craft.joints import Chain, Joint, Scan, StoneSides, joints, profiles, scan
 from drystone.craft.settings import CraftSettings
 from drystone.errors import InputError, UsageError
 from drystone.kernels.polygons import Points, Polygons, area_and_centroid, no_polygons
@@ -109,12 +109,6 @@ class Masonry:
         return {i: area_and_centroid(loop)[1:] for i, loop in self.loops.items()}
 
     @cached_property
-    def median_size(self) -> float:
-        """Root of the median area of the stones; 1 when there are none."""
-        areas = [self.areas[i] for i in self.stones]
-        return float(np.median(areas)) ** 0.5 if areas else 1.0
-
-    @cached_property
     def polygons(self) -> Polygons:
         """All stones and wedges in one array."""
         return no_polygons().added(self.loops.values())
@@ -151,6 +145,11 @@ class Masonry:
     def columns(self) -> Scan:
         """What lies on upright lines."""
         return self._scan(1)
+
+    @cached_property
+    def profiles(self) -> Mapping[int, StoneSides]:
+        """The lower and the upper sides of the stones."""
+        return profiles(self.columns, self.stones, self.box[1])
 
     def _scan(self, axis: int) -> Scan:
         """Cut the wall by lines; refuse a wall of which lines without end would tell nothing."""
@@ -213,7 +212,7 @@ class Masonry:
         for stone, beds in found.items():
             least = self.settings.bearing * (self.boxes[stone][2] - self.boxes[stone][0])
             wide = [
-                (lower, min(bed.x0 for bed in pieces), max(bed.x1 for bed in pieces))
+                (lower, float(pieces[0].points[0, 0]), float(pieces[-1].points[-1, 0]))
                 for lower, pieces in beds.items()
                 if sum(bed.length for bed in pieces) >= least * (1.0 - 1e-9)
             ]
@@ -269,8 +268,7 @@ class Masonry:
 def _open(loop: Points) -> Points:
     if len(loop) > 1 and (loop[0] == loop[-1]).all():
         loop = loop[:-1]
-    x, y = loop.T
-    return loop if float(x @ np.roll(y, -1) - y @ np.roll(x, -1)) >= 0 else loop[::-1]
+    return loop if area_and_centroid(loop)[0] >= 0 else loop[::-1]
 
 
 def _links(masonry: Masonry) -> list[tuple[tuple[float, float], int, int]]:
@@ -279,8 +277,8 @@ def _links(masonry: Masonry) -> list[tuple[tuple[float, float], int, int]]:
     if not heads:
         return []
     settings, height = masonry.settings, masonry.mean_height
-    bottoms = np.array([joint.bottom for joint in heads])
-    tops = np.array([joint.top for joint in heads])
+    bottoms = np.array([joint.points[0] for joint in heads])
+    tops = np.array([joint.points[-1] for joint in heads])
     aside, up = (1e-9 + settings.offset) * height, (1e-9 + settings.hole) * height
     # The ends of two joints that meet overlap by the rounding of stones to lines of the scan.
     low, high = tops - (aside, 2.5 * masonry.rows.spacing), np.add(tops, (aside, up))

@@ -70,15 +70,14 @@ def _loads(masonry: Masonry, wedges: frozenset[int]) -> tuple[Mapping[int, float
     if model is None or loose_blocks(model):
         return None, f"{UNKNOWN}: {fallen}"
     open_heads = tuple(face for face in model.interfaces if not is_head_joint(face))
-    loads = least_wedge_loads(replace(model, interfaces=open_heads), wedges)
-    if not isinstance(loads, LimitStatus):
-        return loads, ""
-    if loads is LimitStatus.UNSTABLE:
-        loads = least_wedge_loads(model, wedges)
-    if not isinstance(loads, LimitStatus):
-        return loads, "The wall stands only by pressure in upright joints, which was counted on."
-    gave_up = loads is LimitStatus.FAILED
-    return None, f"{UNKNOWN}: {'the solver gave up.' if gave_up else fallen}"
+    pressed = "The wall stands only by pressure in upright joints, which was counted on."
+    for faces, note in ((open_heads, ""), (model.interfaces, pressed)):
+        loads = least_wedge_loads(replace(model, interfaces=faces), wedges)
+        if not isinstance(loads, LimitStatus):
+            return loads, note
+        if loads is LimitStatus.FAILED:
+            return None, f"{UNKNOWN}: the solver gave up."
+    return None, f"{UNKNOWN}: {fallen}"
 
 
 def _frame(masonry: Masonry, wedge: int) -> tuple[Line, ...]:
@@ -122,7 +121,7 @@ def _unfit(masonry: Masonry, wedge: int, resting: tuple[int, ...]) -> list[Case]
     """Say what is wrong with a wedge that no mason would cut; lengths in sizes of the stones."""
     if not (masonry.cut and masonry.stones):
         return []
-    size = masonry.median_size
+    size = float(np.median([masonry.areas[i] for i in masonry.stones])) ** 0.5
     mu = 0.58 if masonry.model is None else masonry.model.mu
     per_m = None if masonry.per_m is None else masonry.per_m / size
     rule = WedgeRule.of(WedgeSettings(), mu, 1.0, per_m)

@@ -3,71 +3,24 @@
 All is read off the columns of the wall: what is next below each stone, and how far away.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from drystone.craft.finding import Case, Evidence, Limit, Line, worst_first
+from drystone.craft.joints import StoneSides
 from drystone.craft.masonry import Masonry
 from drystone.craft.pins import resting_on
 from drystone.kernels.profiles import Floats
 
 
-@dataclass(frozen=True, eq=False)
-class Under:
-    """The lower side of a stone, column by column from left to right."""
-
-    x: Floats  # (n,)
-    low: Floats  # (n,) height of the stone's lower side
-    gap: Floats  # (n,) air down to the next stone, wedge or the ground
-    spacing: float  # of columns
-
-    def seat(self, near: float, steepest: float, joint: float) -> Floats:
-        """Return the x of the columns that bear: level enough, and as near as the nearest.
-
-        `near` is how much more air they may have, `steepest` their greatest slope; what is farther
-        from what is below than a `joint` is wide bears nothing.
-        """
-        if len(self.x) < 2:
-            return self.x
-        level = np.abs(np.gradient(self.low, self.spacing)) <= steepest
-        level &= self.gap <= joint
-        if not level.any():
-            return self.x[:0]
-        return np.asarray(self.x[level & (self.gap <= self.gap[level].min() + near)])
-
-
-def undersides(masonry: Masonry) -> dict[int, Under]:
-    """Return the lower sides of all stones that any column cuts."""
-    found: dict[int, list[tuple[float, float, float]]] = {i: [] for i in masonry.stones}
-    ground, columns = masonry.box[1], masonry.columns
-    for x, runs in zip(columns.places.tolist(), columns.runs, strict=True):
-        top, owner = ground, 0
-        for run in runs:
-            if run.id in found and owner != run.id:
-                found[run.id].append((x, run.begin, max(0.0, run.begin - top)))
-            if run.end > top:
-                top, owner = run.end, run.id
-    sides = {}
-    for stone, cells in found.items():
-        # Of a stone that a column cuts twice the lower piece is its lower side.
-        lowest = {cell[0]: cell for cell in reversed(cells)}
-        if lowest:
-            told = [lowest[x] for x in sorted(lowest)]
-            x, low, gap = np.array(told).T
-            sides[stone] = Under(x, low, gap, columns.spacing)
-    return sides
-
-
 def seats(masonry: Masonry) -> Evidence:
     """Find stones that rest on a point, or whose middle is not over their seat."""
     settings, cases, height = masonry.settings, [], masonry.mean_height
-    raised = {i: one for i, one in undersides(masonry).items() if i not in masonry.on_ground}
+    raised = {i: one for i, one in masonry.profiles.items() if i not in masonry.on_ground}
     if not raised:
         return Evidence(None, note="No stone lies on others.")
     for stone, under in raised.items():
         size, middle = masonry.areas[stone] ** 0.5, masonry.centroids[stone][0]
-        bearing = under.seat(settings.near * height, settings.slope, settings.joint * height)
+        bearing = _seat(under, settings.near * height, settings.slope, settings.joint * height)
         if not len(bearing):
             low = float(under.low.min())
             left, right = under.x[[0, -1]].tolist()
@@ -92,6 +45,21 @@ def seats(masonry: Masonry) -> Evidence:
     return Evidence(
         len(cases) / len(raised), worst_first(cases), {"raised stones": float(len(raised))}
     )
+
+
+def _seat(under: StoneSides, near: float, steepest: float, joint: float) -> Floats:
+    """Return the x of the columns that bear: level enough, and as near as the nearest.
+
+    `near` is how much more air they may have, `steepest` their greatest slope; what is farther
+    from what is below than a `joint` is wide bears nothing.
+    """
+    if len(under.x) < 2:
+        return under.x
+    level = np.abs(np.gradient(under.low, under.spacing)) <= steepest
+    level &= under.gap <= joint
+    if not level.any():
+        return under.x[:0]
+    return np.asarray(under.x[level & (under.gap <= under.gap[level].min() + near)])
 
 
 def towers(masonry: Masonry) -> Evidence:
@@ -124,7 +92,7 @@ def towers(masonry: Masonry) -> Evidence:
 
 def voids(masonry: Masonry) -> Evidence:
     """Find lower corners with nothing beneath them."""
-    sides = undersides(masonry)
+    sides = masonry.profiles
     if not sides:
         return Evidence(None, note="There are no stones.")
     widest, cases = masonry.settings.joint * masonry.mean_height, []

@@ -11,8 +11,9 @@ from drystone.cli.reading import add_wall, reading_from
 from drystone.contacts.blocks import notices_of
 from drystone.contacts.given import model_from_json, polygons_from_json
 from drystone.contacts.outlines import model_of_traced
-from drystone.craft import RULES, CraftReport, Finding, Limit, Masonry, look
-from drystone.craft.look import UNSEEN
+from drystone.craft.finding import Finding, Limit
+from drystone.craft.look import RULES, UNSEEN, CraftReport, look
+from drystone.craft.masonry import Masonry
 from drystone.errors import ExitCode, UsageError, counted
 from drystone.io.walls import GivenWall, read_wall
 

@@ -3,7 +3,8 @@
 from pathlib import Path
 from typing import Any
 
-from drystone.craft import RULES, CraftReport, Masonry, look
+from drystone.craft.look import RULES, CraftReport, look
+from drystone.craft.masonry import Masonry
 from drystone.drawing.words.content import figure_rows, number
 from drystone.errors import counted
 from drystone.kernels.backend import describe
