@@ -26,7 +26,6 @@ from drystone.photo.segment_doubts import (
     verdict_notices,
     verdict_of,
 )
-from drystone.photo.segment_ground import SegmentSettings
 from drystone.photo.segment_photo import placed_markers, segment_photo
 from drystone_lab.photographs.rendered import photograph
 from drystone_lab.photos import overlaps, pixels, score
@@ -120,7 +119,7 @@ def test_touching_stones_are_cut_where_they_touch_and_convex_ones_never():
     assert found.count == 2
     truth = (one & ~other) * 1 + (other & ~one) * 2
     assert overlaps(truth.astype(np.uint16), found.labels).max(axis=1).min() > 0.93
-    whole = segment(picture, settings=SegmentSettings(split=False))
+    whole = segment(picture, split=False)
     assert whole.count == 1
     assert "W175" in codes(whole)
     bar = (np.abs(ROWS - 150) < 18) & (np.abs(COLS - 200) < 160)
@@ -175,7 +174,7 @@ def test_light_and_dark_ground_can_be_said(ground):
     """The left half is light, the right one dark, and each has a stone."""
     brown, red = (disc(150, 90, 40), (110, 90, 70)), (disc(150, 300, 40), (120, 60, 40))
     picture = drawn((COLS < 190, (230, 225, 215)), brown, red, ground=(40, 40, 45))
-    found = segment(picture, settings=SegmentSettings(ground=ground))
+    found = segment(picture, ground=ground)
     assert (found.ground.colour[0] > 80) == (ground == "light")
     assert found.labels[150, 90 if ground == "light" else 300]
 
@@ -189,8 +188,7 @@ def test_small_and_unusual_stones_are_said():
     (one,) = found.left_out
     assert (one.why, one.at_px) == (TOO_SMALL, pytest.approx((250.5, 220.5), abs=0.6))
     assert any("stone 5" in doubt.text for doubt in doubts_of(found) if doubt.code == "W179")
-    least = SegmentSettings(min_area_px=600)
-    assert segment(drawn(*stones, small, speck), settings=least).count == 4
+    assert segment(drawn(*stones, small, speck), min_area_px=600).count == 4
     faint = drawn((disc(150, 200, 60), (66, 126, 190)), noise=0.5)
     assert "W178" in codes(segment(faint))
 
@@ -211,7 +209,7 @@ def test_no_stones_and_no_ground_are_errors(ground):
         (clouds, None, {"E176"} if ground == "auto" else either),
     ):
         with pytest.raises(InputError) as refused:
-            segment(picture, settings=SegmentSettings(ground=ground), papers=papers)
+            segment(picture, ground=ground, papers=papers)
         assert refused.value.code in codes
 
 

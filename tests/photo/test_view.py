@@ -29,40 +29,40 @@ def view():
 
 
 def test_points_go_where_they_are_said_to_go(shown, view):
-    above = rectify(shown, replace(view, px_per_m=1500.0), MOST_PX)
-    assert above.px_per_m == 1500.0
-    found = find_markers(above.values)
+    values, px_per_m, _, from_photo = rectify(shown, replace(view, px_per_m=1500.0), MOST_PX)
+    assert px_per_m == 1500.0
+    found = find_markers(values)
     apart = outline(*PLACED[0][1:]).mean(axis=0) - outline(*PLACED[1][1:]).mean(axis=0)
     seen = found[0].corners_px.mean(axis=0) - found[1].corners_px.mean(axis=0)
     assert np.hypot(*seen) == pytest.approx(1500.0 * np.hypot(*apart), abs=0.5)
     for one, of_photo in zip(found, find_markers(shown), strict=True):
         sides = one.corners_px - np.roll(one.corners_px, 1, axis=0)
         assert np.hypot(*sides.T) == pytest.approx(np.full(4, 75.0), abs=0.4)
-        moved = apply(above.from_photo, of_photo.corners_px)
+        moved = apply(from_photo, of_photo.corners_px)
         assert np.abs(moved - one.corners_px).max() < 0.5
         on_ground = apply(view.photo_to_ground, of_photo.corners_px)
         assert moved == pytest.approx(on_ground * 1500.0, abs=1e-6)
 
 
 def test_all_of_the_photo_is_shown_and_nothing_else_in_a_size_that_is_bounded(shown, view):
-    above = rectify(np.full_like(shown, 200), view, MOST_PX)
-    corners = apply(above.from_photo, np.array([[0.0, 0.0], [640, 0], [640, 480], [0, 480]]))
-    height, width = above.inside.shape
-    assert above.values.shape == (height, width, 3)
+    values, _, inside, from_photo = rectify(np.full_like(shown, 200), view, MOST_PX)
+    corners = apply(from_photo, np.array([[0.0, 0.0], [640, 0], [640, 480], [0, 480]]))
+    height, width = inside.shape
+    assert values.shape == (height, width, 3)
     assert corners.min() >= -1e-6
     assert corners.max(axis=0) == pytest.approx([width, height], abs=1.0)
     drawn = cv2.contourArea(corners.astype(np.float32))
-    assert above.inside.sum() == pytest.approx(drawn, rel=0.005)
-    assert (above.values[~above.inside] == 0).mean() > 0.98
-    small = rectify(shown, view, max_px=50_000)
-    assert small.inside.size <= 50_000 * 1.02
-    assert small.px_per_m < view.px_per_m
+    assert inside.sum() == pytest.approx(drawn, rel=0.005)
+    assert (values[~inside] == 0).mean() > 0.98
+    _, px_per_m, inside, _ = rectify(shown, view, max_px=50_000)
+    assert inside.size <= 50_000 * 1.02
+    assert px_per_m < view.px_per_m
 
 
 def from_above(picture, px_per_m):
     """The picture of a view from straight above at 400 px/m, in another scale."""
     straight = View(np.diag([1 / 400, 1 / 400, 1.0]), px_per_m, (), 0.0, 0.0, ())
-    return rectify(np.ascontiguousarray(picture), straight, MOST_PX).values
+    return rectify(np.ascontiguousarray(picture), straight, MOST_PX)[0]
 
 
 def test_no_half_px_is_lost_and_fine_texture_is_averaged():

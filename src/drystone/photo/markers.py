@@ -39,7 +39,7 @@ FEW_SQUARES = 6
 DICTIONARIES = ("aruco", "apriltag")
 """Families that are printed; they come first."""
 
-_FAMILIES = {
+FAMILIES = {
     "aruco": ("ArUco 4x4_50", "DICT_4X4_50"),
     "apriltag": ("AprilTag 36h11", "DICT_APRILTAG_36h11"),
     "aruco5x5": ("ArUco 5x5", "DICT_5X5_1000"),
@@ -54,9 +54,6 @@ _FAMILIES = {
 }
 """Names of families for people, and in OpenCV; the smaller dictionaries of OpenCV are the first ids
 of these."""
-
-FAMILIES = {name: title for name, (title, _) in _FAMILIES.items()}
-"""Name of a family for people."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -236,11 +233,11 @@ def load_cv2() -> Any:
 
 def opencv_dictionary(name: str) -> Any:
     """Return OpenCV's dictionary of a family; E174 for a name that is none."""
-    if name not in _FAMILIES:
+    if name not in FAMILIES:
         what, cure = f"{name!r} is not a family of markers.", f"Known: {', '.join(DICTIONARIES)}."
         raise UsageError("E174", what, where="--dictionary", cure=cure)
     aruco = load_cv2().aruco
-    return aruco.getPredefinedDictionary(getattr(aruco, _FAMILIES[name][1]))
+    return aruco.getPredefinedDictionary(getattr(aruco, FAMILIES[name][1]))
 
 
 def modules_across(name: str) -> int:

@@ -3,7 +3,6 @@
 import math
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from scipy.optimize import least_squares
@@ -14,28 +13,8 @@ from drystone.photo.layout import MarkerLayout
 from drystone.photo.markers import DICTIONARIES, FAMILIES, FoundMarker
 from drystone.photo.view import SQUARE, View, apply, depth, jacobian, refuse_horizon
 
-
-@dataclass(frozen=True, eq=False)
-class Piece:
-    """A rigid piece of paper with points on it."""
-
-    seen_px: Points  # (n, 2) points in the photograph
-    flat_m: Points  # (n, 2) the same points on the paper, metres
-
-
-@dataclass(frozen=True, eq=False)
-class CommonPlane:
-    """A plane that all pieces lie on."""
-
-    to_plane: Points  # (3, 3) homography from the photograph to the plane, metres
-    # Of each piece, (n, 2): from the points of the paper where it fits best to those of the
-    # photograph, metres on the plane.
-    off_m: tuple[Points, ...]
-    # (n,) sizes that would fit better, over those given; the largest piece in the photograph has 1.
-    sizes: Points
-    # How much better they fit (F statistic): near to 1 for noise, far above for wrong sizes.
-    surer: float
-
+Piece = tuple[Points, Points]
+"""Points on a rigid piece of paper, (n, 2): in the photograph, px, and on the paper, metres."""
 
 LEAST_SIDE_PX, SMALL_SIDE_PX = 40.0, 100.0
 """Smaller markers are left out (W171); the scale is in doubt when none is larger (W172)."""
@@ -63,18 +42,19 @@ def scale_and_view(
     used, notices = _usable(found, layout)
     groups = sorted({layout.group(marker.id) for marker in used})
     papers = [[marker for marker in used if layout.group(marker.id) == one] for one in groups]
-    plane = fit_plane(
+    fitted = fit_plane(
         [
-            Piece(
+            (
                 np.concatenate([marker.corners_px for marker in paper]),
                 np.concatenate([layout.corners_m(marker.id) for marker in paper]),
             )
             for paper in papers
         ]
     )
-    if plane is None:
+    if fitted is None:
         raise _disagreement("No view of the ground gives all of them their size")
-    residual_m = _believed(papers, plane, layout)
+    to_plane, off_m, sizes, surer = fitted
+    residual_m = _believed(papers, layout, off_m, sizes, surer)
     percent = 100.0 * residual_m / layout.side_m
     largest = max(marker.side_px for marker in used)
     if largest < SMALL_SIDE_PX:
@@ -83,13 +63,13 @@ def scale_and_view(
     if percent > DOUBTFUL_PERCENT:
         said = f"The corners of the markers are {percent:.1f} % of a marker off on average."
         notices.append(Notice("W172", said, "Are they flat, sharp, and in the same plane?"))
-    refuse_horizon(plane.to_plane, size_px)
+    refuse_horizon(to_plane, size_px)
     # The plane is turned and moved so that the picture stays upright and begins at 0, 0.
     middle = np.array(size_px) / 2.0
-    local = jacobian(plane.to_plane, middle)
+    local = jacobian(to_plane, middle)
     angle = math.atan2(local[1, 0] - local[0, 1], local[0, 0] + local[1, 1])
     cos, sin = math.cos(angle), math.sin(angle)
-    turned = np.array([[cos, sin, 0.0], [-sin, cos, 0.0], [0.0, 0.0, 1.0]]) @ plane.to_plane
+    turned = np.array([[cos, sin, 0.0], [-sin, cos, 0.0], [0.0, 0.0, 1.0]]) @ to_plane
     low = apply(turned, SQUARE * size_px).min(axis=0)
     to_ground = np.array([[1.0, 0.0, -low[0]], [0.0, 1.0, -low[1]], [0.0, 0.0, 1.0]]) @ turned
     metres_per_px = math.sqrt(np.linalg.det(jacobian(to_ground, middle)))
@@ -132,8 +112,8 @@ def _usable(
 
 def _other_family(found: Sequence[FoundMarker], layout: MarkerLayout) -> Notice:
     """Say that markers are not of those that are printed here; a sheet cannot be of such (E170)."""
-    what = f"{_markers(sorted({one.id for one in found}))} of {FAMILIES[found[0].dictionary]}"
-    printed = " and ".join(FAMILIES[name] for name in DICTIONARIES)
+    what = f"{_markers(sorted({one.id for one in found}))} of {FAMILIES[found[0].dictionary][0]}"
+    printed = " and ".join(FAMILIES[name][0] for name in DICTIONARIES)
     if layout.page is not None:
         raise InputError(
             "E170",
@@ -164,7 +144,7 @@ def _too_few(
 ) -> InputError:
     what = "no marker can be used"
     if not found:
-        read = ", ".join(FAMILIES.values())
+        read = ", ".join(title for title, _ in FAMILIES.values())
         what = f"no marker was found (looked for {read}, all of their white border visible)"
     if used:
         what = f"only marker {used[0].id} can be used"
@@ -183,20 +163,24 @@ def _too_few(
 
 
 def _believed(
-    papers: Sequence[Sequence[FoundMarker]], plane: CommonPlane, layout: MarkerLayout
+    papers: Sequence[Sequence[FoundMarker]],
+    layout: MarkerLayout,
+    off_m: Sequence[Points],
+    sizes: Points,
+    surer: float,
 ) -> float:
     """Return the residual of all corners, metres; refuse markers that disagree (E172)."""
     # Perspective can hide from the residual that sizes differ.
-    spread = 100.0 * (float(plane.sizes.max() / plane.sizes.min()) - 1.0)
-    if plane.surer > SURER and spread > MOST_SIZE_PERCENT:
-        low, high = (papers[int(one)][0].id for one in (plane.sizes.argmin(), plane.sizes.argmax()))
+    spread = 100.0 * (float(sizes.max() / sizes.min()) - 1.0)
+    if surer > SURER and spread > MOST_SIZE_PERCENT:
+        low, high = (papers[int(one)][0].id for one in (sizes.argmin(), sizes.argmax()))
         raise _disagreement(
             f"Marker {high} seems to be {spread:.1f} % larger than marker {low}, and both should "
             f"measure {1000 * layout.side_m:g} mm"
         )
     square_m = {
         marker.id: (off[4 * i : 4 * i + 4] ** 2).sum(axis=1)
-        for paper, off in zip(papers, plane.off_m, strict=True)
+        for paper, off in zip(papers, off_m, strict=True)
         for i, marker in enumerate(paper)
     }
     rms_m = {one: math.sqrt(float(square.mean())) for one, square in square_m.items()}
@@ -231,27 +215,31 @@ def _markers(ids: Sequence[int]) -> str:
     return f"marker{'s' * (len(ids) > 1)} {', '.join(map(str, ids))}"
 
 
-def fit_plane(pieces: Sequence[Piece]) -> CommonPlane | None:
+def fit_plane(pieces: Sequence[Piece]) -> tuple[Points, list[Points], Points, float] | None:
     """Find the plane for which every piece has its size and shape.
 
     The sum of squares of the distances, in px of the photograph, between the points that were
     seen and those of the pieces is made least over the homography and the poses of the pieces
     (turned and moved, never mirrored).  None when no homography of any meaning was found.
+
+    Returned is the homography from the photograph to the plane, metres.  Then, of each piece, the
+    way on the plane from its points where it fits best to those of the photograph, metres.  Then
+    (n,) sizes that would fit better, over those given, 1 for the largest piece.  At last how much
+    better they fit (F statistic): near to 1 for noise, far above for wrong sizes.
     """
     # Numbers near to 1 for the solver: px and metres are unlike by orders of magnitude.
-    every_px = np.concatenate([piece.seen_px for piece in pieces])
+    every_px = np.concatenate([seen_px for seen_px, _ in pieces])
     centre = every_px.mean(axis=0)
     spread = float(np.abs(every_px - centre).max())
     unit_px = np.array([[1.0, 0.0, -centre[0]], [0.0, 1.0, -centre[1]], [0.0, 0.0, spread]])
-    unit_m = max(float(np.ptp(piece.flat_m, axis=0).max()) for piece in pieces)
-    areas = [float(np.prod(np.ptp(piece.seen_px, axis=0))) for piece in pieces]
+    unit_m = max(float(np.ptp(flat_m, axis=0).max()) for _, flat_m in pieces)
+    areas = [float(np.prod(np.ptp(seen_px, axis=0))) for seen_px, _ in pieces]
     order = sorted(range(len(pieces)), key=lambda one: -areas[one])
-    scaled = [Piece(apply(unit_px, pieces[i].seen_px), pieces[i].flat_m / unit_m) for i in order]
+    scaled = [(apply(unit_px, pieces[i][0]), pieces[i][1] / unit_m) for i in order]
     # It begins with the homography of the largest piece, and what that is without perspective.
-    largest = scaled[0]
-    design = np.column_stack([largest.flat_m, np.ones(len(largest.flat_m))])
-    rows, *_ = np.linalg.lstsq(design, largest.seen_px, rcond=None)
-    beginnings = np.vstack([rows.T, [0.0, 0.0, 1.0]]), direct(largest.flat_m, largest.seen_px)
+    seen, flat = scaled[0]
+    rows, *_ = np.linalg.lstsq(np.column_stack([flat, np.ones(len(flat))]), seen, rcond=None)
+    beginnings = np.vstack([rows.T, [0.0, 0.0, 1.0]]), direct(flat, seen)
     tried = [_least(scaled, to_seen) for to_seen in beginnings]
     found = [one for one in tried if one is not None]
     if not found:
@@ -262,11 +250,11 @@ def fit_plane(pieces: Sequence[Piece]) -> CommonPlane | None:
     sizes = np.ones(len(pieces))
     sizes[order], surer = _sizes(scaled, *best)
     off_m = []
-    for piece in pieces:
-        on_plane = apply(to_plane, piece.seen_px)
-        turn, shift = rigid(piece.flat_m, on_plane)
-        off_m.append(on_plane - (piece.flat_m @ turn.T + shift))
-    return CommonPlane(to_plane, tuple(off_m), sizes, surer)
+    for seen_px, flat_m in pieces:
+        on_plane = apply(to_plane, seen_px)
+        turn, shift = rigid(flat_m, on_plane)
+        off_m.append(on_plane - (flat_m @ turn.T + shift))
+    return to_plane, off_m, sizes, surer
 
 
 def _least(pieces: Sequence[Piece], to_seen: Points) -> tuple[float, Points, Points] | None:
@@ -276,8 +264,8 @@ def _least(pieces: Sequence[Piece], to_seen: Points) -> tuple[float, Points, Poi
     """
     poses = [np.zeros(3)]
     with np.errstate(all="ignore"):
-        for piece in pieces[1:]:
-            turn, shift = rigid(piece.flat_m, apply(np.linalg.inv(to_seen), piece.seen_px))
+        for seen, flat in pieces[1:]:
+            turn, shift = rigid(flat, apply(np.linalg.inv(to_seen), seen))
             poses.append(np.array([np.arctan2(turn[1, 0], turn[0, 0]), *shift]))
         start = np.concatenate([(to_seen / to_seen[2, 2]).ravel()[:8], *poses[1:]])
         if not np.isfinite(start).all():
@@ -288,7 +276,7 @@ def _least(pieces: Sequence[Piece], to_seen: Points) -> tuple[float, Points, Poi
     if not np.isfinite(result.x).all() or np.linalg.det(homography) <= 0:
         return None
     back = np.linalg.inv(homography)
-    if any((depth(back, piece.seen_px) <= 0).any() for piece in pieces):
+    if any((depth(back, seen) <= 0).any() for seen, _ in pieces):
         return None
     return float(result.cost), homography, result.x[8:].reshape(-1, 3)
 
@@ -305,7 +293,7 @@ def _sizes(
     with np.errstate(all="ignore"):
         result = least_squares(_misses, start, args=(pieces, 4), method="lm", max_nfev=4000)
     sizes = np.exp(np.append(0.0, result.x[8:].reshape(-1, 4)[:, 3]))
-    left = 2 * sum(len(piece.seen_px) for piece in pieces) - len(start)
+    left = 2 * sum(len(seen) for seen, _ in pieces) - len(start)
     # Corners are never better than a few thousandths of a px, whatever a computed picture says.
     noise = max(float(result.cost), 1e-12) / left
     return np.asarray(sizes), float(cost - result.cost) / more / noise
@@ -321,10 +309,10 @@ def _misses(variables: Points, pieces: Sequence[Piece], each: int) -> Points:
     poses = np.zeros((len(pieces), 4))
     poses[1:, :each] = variables[8:].reshape(-1, each)
     missed = []
-    for piece, (angle, x, y, size) in zip(pieces, poses, strict=True):
+    for (seen, flat), (angle, x, y, size) in zip(pieces, poses, strict=True):
         cos, sin = np.exp(size) * np.cos(angle), np.exp(size) * np.sin(angle)
-        placed = piece.flat_m @ np.array([[cos, sin], [-sin, cos]]) + (x, y)
-        missed.append(apply(homography, placed) - piece.seen_px)
+        placed = flat @ np.array([[cos, sin], [-sin, cos]]) + (x, y)
+        missed.append(apply(homography, placed) - seen)
     return np.concatenate(missed).ravel()
 
 

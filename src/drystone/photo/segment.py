@@ -11,13 +11,7 @@ from skimage.segmentation import watershed
 
 from drystone.errors import InputError
 from drystone.kernels.raster import Mask
-from drystone.photo.segment_ground import (
-    GroundModel,
-    Planes,
-    SegmentSettings,
-    find_shadows,
-    fit_ground,
-)
+from drystone.photo.segment_ground import Ground, GroundModel, Planes, find_shadows, fit_ground
 
 Labels = NDArray[np.int32]
 
@@ -105,40 +99,44 @@ class FoundStones:
 def segment(
     image: NDArray[np.uint8],
     inside: Mask | None = None,
-    settings: SegmentSettings | None = None,
     papers: Mask | None = None,
+    *,
+    ground: Ground = "auto",
+    min_area_px: float | None = None,
+    split: bool = True,
 ) -> FoundStones:
     """Find stones in an RGB picture from above, of `WORKING_PX` or less for speed.
 
     `inside` (h, w) is False where there is no photograph, `papers` (h, w) True on markers; what
-    touches them is their paper.  E175 no stones; E176 no even ground.
+    touches them is their paper.  Areas below `min_area_px` are no stones: below a fiftieth of a
+    usual stone, and a five thousandth of the picture, unless given.  `split` cuts touching stones
+    apart at narrow necks.  E175 no stones; E176 no even ground.
     """
-    settings = settings or SegmentSettings()
     papers = np.zeros(image.shape[:2], bool) if papers is None else papers
     usable = ~papers if inside is None else inside & ~papers
-    ground = fit_ground(image, usable, settings.ground)
+    model = fit_ground(image, usable, ground)
     # What may not be ground is far from its colour by what the ground itself varies ...
-    distance = np.where(usable, ground.distance, 0)
+    distance = np.where(usable, model.distance, 0)
     near = distance[usable & (distance < 6)]
     low = float(np.clip(1.3 * np.percentile(near, 98), 3.0, 6.0)) if near.size else 3.0
     unlike = ndimage.binary_opening(distance > low)
     # ... and surely is none in pieces that are far from it somewhere.
     pieces, count = ndimage.label(unlike)
-    farthest = np.asarray(ndimage.maximum(ground.distance, pieces, np.arange(count + 1)))
+    farthest = np.asarray(ndimage.maximum(model.distance, pieces, np.arange(count + 1)))
     foreground = unlike & (farthest > 1.6 * low)[pieces]
-    shadows, shadow_level, alike = find_shadows(ground, foreground, usable)
+    shadows, shadow_level, alike = find_shadows(model, foreground, usable)
     stone = _solid(foreground & ~shadows, usable)
-    stone = refine_outlines(ground.lab, stone, usable)
+    stone = refine_outlines(model.lab, stone, usable)
     stone = _without_horns(_solid(stone, usable))
     pieces, _ = ndimage.label(stone, np.ones((3, 3)))
     beside = stone & np.isin(pieces, pieces[ndimage.binary_dilation(papers, iterations=5)])
-    labels, necks = split_stones(stone & ~beside, ground.lab, split=settings.split)
-    found, cut, small, least_px = _sorted_out(labels, usable | papers, settings)
+    labels, necks = split_stones(stone & ~beside, model.lab, split=split)
+    found, cut, small, least_px = _sorted_out(labels, usable | papers, min_area_px)
     if not found.any():
-        raise _no_stones(len(shapes(cut, EDGE)), ground)
+        raise _no_stones(len(shapes(cut, EDGE)), model)
     causes = {SHADOW: shadows, FAINT: unlike & ~foreground}
     known = stone | (labels > 0)
-    # Stones of which a part, but not all, has the colour of shaded ground.
+    # Stones of which a part, but not all, has the colour of shaded model.
     body = ndimage.binary_opening(alike & (found > 0), iterations=3)
     share = np.bincount(found[body], minlength=found.max() + 1) / np.bincount(found.ravel())
     shaded = np.flatnonzero((share > 0.15) & (share < 0.85) & (np.arange(len(share)) > 0))
@@ -146,14 +144,14 @@ def segment(
         *shapes(cut, EDGE), *shapes(beside, PAPER), *lost(unlike, known, causes, least_px),
         *shapes(small, SMALL),
     )  # fmt: skip
-    contrast = contrast_along(ground.lab, found.astype(np.int32))
+    contrast = contrast_along(model.lab, found.astype(np.int32))
     return FoundStones(
         labels=found,
         necks=tuple(neck for neck in necks if stones_at(found, neck.at_px)),
         contrast=tuple(contrast.tolist()),
         shaded=tuple(shaded.tolist()),
         left_out=left_out,
-        ground=ground,
+        ground=model,
         shadow_level=shadow_level,
     )
 
@@ -189,7 +187,7 @@ def _without_horns(stone: Mask) -> Mask:
 
 
 def _sorted_out(
-    labels: Labels, shown: Mask, settings: SegmentSettings
+    labels: Labels, shown: Mask, least: float | None
 ) -> tuple[NDArray[np.uint16], Labels, Labels, float]:
     """Leave out what is too small or cut, and number the rest in rows.
 
@@ -197,7 +195,6 @@ def _sorted_out(
     """
     areas = np.bincount(labels.ravel())
     areas[0] = 0
-    least = settings.min_area_px
     if least is None:
         # Half of all that was found belongs to pieces larger than the usual area.
         ordered = np.sort(areas)[::-1]

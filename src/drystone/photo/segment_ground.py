@@ -16,19 +16,8 @@ Planes = NDArray[np.float32]
 """(h, w, 3)."""
 
 Ground = Literal["auto", "light", "dark"]
-
-
-@dataclass(frozen=True, kw_only=True)
-class SegmentSettings:
-    """How stones are told from the ground."""
-
-    # The lightest or the darkest large area of the photograph; or the colour that is most frequent
-    # along the borders and all over.
-    ground: Ground = "auto"
-    # Smaller areas are no stones; None for a fiftieth of a usual stone (and at least a five
-    # thousandth of the picture).
-    min_area_px: float | None = None
-    split: bool = True  # cut touching stones apart at narrow necks
+"""The lightest or the darkest large area of the photograph; or the colour that is most frequent
+along the borders and all over."""
 
 
 LEAST_SHARE = 0.2

@@ -3,12 +3,13 @@
 import math
 from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 from skimage.draw import polygon2mask
+from skimage.transform import estimate_transform
 
 from drystone.errors import Notice, UsageError
 from drystone.kernels.raster import Mask
@@ -17,7 +18,7 @@ from drystone.photo.layout import MarkerLayout, page_mm
 from drystone.photo.markers import FoundMarker, find_markers
 from drystone.photo.scale import rigid, scale_and_view
 from drystone.photo.segment import WORKING_PX, FoundStones, segment
-from drystone.photo.segment_ground import SegmentSettings
+from drystone.photo.segment_ground import Ground
 from drystone.photo.view import SQUARE, View, apply, rectify, without_bands
 
 QUIET_ZONE = 0.3
@@ -64,15 +65,18 @@ class SegmentedPhoto:
 def segment_photo(
     image: NDArray[np.uint8],
     scale: MarkerLayout | float | None = None,
-    settings: SegmentSettings | None = None,
+    *,
+    ground: Ground = "auto",
     min_area: tuple[float, str] | None = None,
+    split: bool = True,
     max_px: int = WORKING_PX,
 ) -> SegmentedPhoto:
     """Find the stones of an RGB photograph, the right way up.
 
     `scale` is photo px in a metre, or the markers that are in it; only markers correct the
-    perspective.  `min_area` is in "px" of the result or in "cm2", and replaces what the settings
-    say.  E170 to E173 of the markers, E175 no stones, E176 no ground.
+    perspective.  `min_area` is in "px" of the result or in "cm2"; for it, `ground` and `split` see
+    :func:`drystone.photo.segment.segment`.  E170 to E173 of the markers, E175 no stones, E176 no
+    ground.
     """
     layout: MarkerLayout | None = None
     view: View | None = None
@@ -101,15 +105,13 @@ def segment_photo(
         with suppress(UsageError):  # nobody asked for markers: none without OpenCV
             markers = find_markers(image)
         unasked = tuple(dict.fromkeys(marker.id for marker in markers))
-    if min_area is not None:
-        value, unit = min_area
-        if unit == "cm2":
-            if px_per_m is None:
-                raise ValueError("an area in cm2 needs a scale")
-            value *= 1e-4 * px_per_m**2
-        settings = replace(settings or SegmentSettings(), min_area_px=value)
+    least_px, unit = min_area or (None, "px")
+    if least_px is not None and unit == "cm2":
+        if px_per_m is None:
+            raise ValueError("an area in cm2 needs a scale")
+        least_px *= 1e-4 * px_per_m**2
     papers = papers_of(markers, layout, from_photo, picture.shape[:2])
-    found = segment(picture, inside, settings, papers)
+    found = segment(picture, inside, papers, ground=ground, min_area_px=least_px, split=split)
     return SegmentedPhoto(picture, found, from_photo, px_per_m, view, placed, unasked)
 
 
@@ -129,14 +131,7 @@ def papers_of(
         seen = apply(from_photo, marker.corners_px)
         if layout is not None and layout.page is not None and layout.lists(marker.id):
             paper = SQUARE * (np.array(page_mm(layout.page)) / 1000.0 * layout.printed)
-            # Points of the plane as complex numbers: a turn with a scale is one factor.
-            known, at, sheet = (
-                one @ (1.0, 1.0j) for one in (layout.corners_m(marker.id), seen, paper)
-            )
-            centred = known - known.mean()
-            factor = np.vdot(centred, at - at.mean()) / np.vdot(centred, centred)
-            moved = (sheet - known.mean()) * factor + at.mean()
-            outline = np.column_stack([moved.real, moved.imag])
+            outline = estimate_transform("similarity", layout.corners_m(marker.id), seen)(paper)
         else:
             middle = seen.mean(axis=0)
             outline = middle + (seen - middle) * (1 + 2 * QUIET_ZONE)

@@ -28,7 +28,6 @@ from drystone.photo.segment_doubts import (
     verdict_notices,
     verdict_of,
 )
-from drystone.photo.segment_ground import SegmentSettings
 from drystone.photo.segment_photo import SegmentedPhoto, segment_photo
 from drystone.photo.view import apply
 from drystone.whole_files import write_whole
@@ -71,7 +70,6 @@ def add(command: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> ExitCode:
     """Find the stones of a photograph, write them, and say what is in doubt."""
     scale = scale_from(arguments)
-    settings = SegmentSettings(ground=arguments.ground, split=arguments.split)
     path, folder = Path(arguments.photo), Path(arguments.output)
     refuse_inputs([path], [folder / name for name in WRITTEN])
     photo = read_photo(path)
@@ -79,9 +77,11 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     min_area = arguments.min_area
     numbers.refuse_cm2(min_area, scale, "photograph", "--aruco, --px-per-m or --ruler")
     prepare_folder(folder, WRITTEN, overwrite=arguments.overwrite)
-    max_px = round(arguments.mpx * 1e6)
+    ground, split, max_px = arguments.ground, arguments.split, round(arguments.mpx * 1e6)
     with busy("finding stones", quiet=arguments.json):
-        result = segment_photo(photo.values, scale, settings, min_area, max_px=max_px)
+        result = segment_photo(
+            photo.values, scale, ground=ground, min_area=min_area, split=split, max_px=max_px
+        )
     doubts = doubts_of(result.found, result.px_per_m)
     if isinstance(scale, numbers.Ruled):
         ends_px = apply(result.from_photo, np.array(scale.ends_px))

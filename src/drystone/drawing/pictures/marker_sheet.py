@@ -87,7 +87,7 @@ def _lines(
     one = len(ids) == 1
     what = f"marker{'' if one else 's'} {', '.join(map(str, ids))}"
     lines = [
-        f"drystone: {what} of {FAMILIES[sheets.dictionary]}, {size:g} mm, on {sheets.page}",
+        f"drystone: {what} of {FAMILIES[sheets.dictionary][0]}, {size:g} mm, on {sheets.page}",
         "1. Print at 100 % (not 'fit to page') and measure the line above.",
     ]
     if one:
