@@ -31,7 +31,9 @@ def stone_features(stones: StoneSet, book: PoseBook) -> NDArray[np.float64]:
     The eccentricity of the ellipse of equal second moments, in [0, 1), and the area of the bounding
     box of the initial pose over the largest in the set, in (0, 1].
     """
-    return _features(stones, _box_areas(stones, book))
+    extents = [np.ptp(turn(s.hull, book.initial_angle(s)), axis=0) for s in stones]
+    box = np.array([extent[0] * extent[1] for extent in extents])
+    return np.column_stack([[stone.eccentricity for stone in stones], box / box.max()])
 
 
 def cluster_stones(
@@ -45,19 +47,8 @@ def cluster_stones(
     ids = [stone.id for stone in stones]
     if len(ids) < 2:
         return dict.fromkeys(ids, 1)
-    box = _box_areas(stones, book)
-    features = _features(stones, box)
+    features = stone_features(stones, book)
     flat = fcluster(ward(features), settings.distance, criterion="distance")
-    size = {label: -float(box[flat == label].mean()) for label in np.unique(flat)}
+    size = {label: -float(features[flat == label, 1].mean()) for label in np.unique(flat)}
     order = {label: rank for rank, label in enumerate(sorted(size, key=lambda k: size[k]), 1)}
     return {stone_id: order[label] for stone_id, label in zip(ids, flat, strict=True)}
-
-
-def _box_areas(stones: StoneSet, book: PoseBook) -> NDArray[np.float64]:
-    """Return the area of the bounding box of each stone's initial pose, source px."""
-    extents = [np.ptp(turn(s.hull, book.initial_angle(s)), axis=0) for s in stones]
-    return np.array([extent[0] * extent[1] for extent in extents])
-
-
-def _features(stones: StoneSet, box: NDArray[np.float64]) -> NDArray[np.float64]:
-    return np.column_stack([[stone.eccentricity for stone in stones], box / box.max()])

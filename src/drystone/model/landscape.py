@@ -1,6 +1,6 @@
 """The landscape L_i: the wall as the next stone sees it, from one end or the other (§3.2)."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
@@ -51,14 +51,8 @@ class Landscape:
     @classmethod
     def of(cls, wall: Wall, side: Side = "left") -> "Landscape":
         """Return the landscape of a wall."""
-        occupied = wall.occupied if side == "left" else mirrored(wall.occupied)
-        width, height = wall.site.width_px, wall.site.height_px
-        boxes = tuple(
-            view_box(p.posed, p.row, p.col if side == "left" else width - p.col - p.posed.width_px,
-                     height)
-            for p in wall.placements
-        )  # fmt: skip
-        return cls(occupied, boxes, side)
+        view = cls(wall.occupied if side == "left" else mirrored(wall.occupied), (), side)
+        return replace(view, boxes=tuple(map(view.box, wall.placements)))
 
     @property
     def height_px(self) -> int:
@@ -103,11 +97,10 @@ class Landscape:
         """Turn a column of the wall image into one of this view, or back."""
         return col if self.side == "left" else self.width_px - col - posed.width_px
 
-    def placed(self, placement: Placement) -> tuple[PosedStone, Box]:
-        """Return a placed stone as it appears in this view, and its box."""
-        posed = self.view(placement.posed)
+    def box(self, placement: Placement) -> Box:
+        """Return the box of a placed stone in this view."""
         col = self.view_col(placement.posed, placement.col)
-        return posed, view_box(posed, placement.row, col, self.height_px)
+        return view_box(placement.posed, placement.row, col, self.height_px)
 
 
 def view_box(posed: PosedStone, row: int, col: int, height_px: int) -> Box:

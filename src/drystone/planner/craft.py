@@ -20,7 +20,7 @@ def action_craft(landscape: Landscape, stabilised: Group, stock: Stock, rest: Re
 
     The landscape is that before the action, seen from the side from which the stone is placed.
     """
-    posed, box = landscape.placed(stabilised.placement)
+    posed, box = landscape.view(stabilised.placement.posed), landscape.box(stabilised.placement)
     at = stabilised.placement.row, box.left
     wedges_px = sum(wedge.area_px for wedge in stabilised.wedges)
     height, void, gap, slot, headroom = _room(landscape, posed, at, stock, rest, wedges_px)

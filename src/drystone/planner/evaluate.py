@@ -118,7 +118,7 @@ class Evaluator:
         """Return a candidate that was judged before, compared with other candidates (Eq. 8)."""
         if proposal.course_height_px == judged.proposal.course_height_px:
             return judged
-        _, box = landscape.placed(proposal.stabilised.placement)
+        box = landscape.box(proposal.stabilised.placement)
         nhr, course_height = _first_or_next(landscape, box, proposal.course_height_px)
         indices = replace(judged.indices, NHR=nhr)
         return replace(judged, proposal=proposal, indices=indices, course_height_px=course_height)
@@ -145,7 +145,7 @@ def action_indices(
     there are none; `narrowest_px` the width of the narrowest stone of the set.
     """
     placement = group.placement
-    posed, box = landscape.placed(placement)
+    posed, box = landscape.view(placement.posed), landscape.box(placement)
     nhr, course_height = _first_or_next(landscape, box, course_height_px)
     indices = Indices(
         SF=shape_factor(placement.posed),

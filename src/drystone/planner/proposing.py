@@ -204,6 +204,6 @@ class RasterProposer(Proposer):
         settings = self.settings.placement
         if settings.reach == "any":
             return True
-        view, box = landscape.placed(stabilised.placement)
-        row = stabilised.placement.row
-        return can_be_lowered(landscape, view, row, box.left, settings.clearance_px)
+        placement = stabilised.placement
+        view, col = landscape.view(placement.posed), landscape.box(placement).left
+        return can_be_lowered(landscape, view, placement.row, col, settings.clearance_px)
