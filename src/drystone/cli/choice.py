@@ -17,11 +17,6 @@ FIGURES = {"F_SF": 3, "F_AV": 1, "F_AH": 2, "F_LR": 3}
 """Figures of merit of the table, with their digits."""
 
 
-def walls_to_choose_from(result: PlanResult) -> tuple[PlanResult, ...]:
-    """Return the walls that none beats in every figure; a single pass has one."""
-    return result.choice or (result,)
-
-
 def files_of_choice(folder: Path) -> tuple[Path, ...]:
     """Return what lies where the choice of a search is: a plan replaces it, or takes it out."""
     return (folder / PICTURE, *(folder / FOLDER).glob("*/*"))
@@ -38,7 +33,7 @@ def prepare_choice(folder: Path) -> None:
 
 def write_choice(result: PlanResult, folder: Path) -> None:
     """Write the walls to choose from, a folder each, and one picture of all."""
-    walls = walls_to_choose_from(result)
+    walls = result.choice or (result,)  # a single pass has one
     for index, one in enumerate(walls, 1):
         place = _place(folder, index)
         make_folder(place)
@@ -69,7 +64,7 @@ def print_choice(result: PlanResult) -> None:
     """Print the walls to choose from, one a line."""
     columns = " ".join(f"{name:>8}" for name in FIGURES)
     print(f"\nwalls that none beats in every figure (pareto.png)\n{'':9} {columns}   stones")
-    for index, one in enumerate(walls_to_choose_from(result), 1):
+    for index, one in enumerate(result.choice or (result,), 1):
         figures = _figures(one)
         values = " ".join(f"{number(figures[name], FIGURES[name]):>8}" for name in FIGURES)
         print(f"{FOLDER}/{index:02} {values} {len(one.plan.stone_steps):>8}")
@@ -80,7 +75,7 @@ def choice_summary(result: PlanResult, folder: Path) -> list[dict[str, Any]]:
     return [
         {"plan": str(_place(folder, index) / "plan.json"), "placed": len(one.plan.stone_steps)}
         | _figures(one)
-        for index, one in enumerate(walls_to_choose_from(result), 1)
+        for index, one in enumerate(result.choice or (result,), 1)
     ]
 
 

@@ -39,30 +39,25 @@ def refuse_inputs(read: Iterable[Path], written: Iterable[Path]) -> None:
 
     Files of both need not be there.
     """
-    path = _first_of(read, written)
-    if path is not None:
-        what = "is read here, and what is read is never replaced, also not with --overwrite."
-        raise refusal(path, what, "Choose another place for what is written.")
+    what = "is read here, and what is read is never replaced, also not with --overwrite."
+    _refuse_over(read, written, what, "Choose another place for what is written.")
 
 
-def _first_of(kept: Iterable[Path], written: Iterable[Path]) -> Path | None:
-    """Return the first file to be written that is one of those to be kept, by any name."""
+def _refuse_over(kept: Iterable[Path], written: Iterable[Path], what: str, cure: str) -> None:
+    """Refuse to write over a file that is to be kept, by any name."""
     there = [path for path in kept if path.exists()]
     for path in written:
         if path.exists() and any(path.samefile(one) for one in there):
-            return path
-    return None
+            raise refusal(path, what, cure)
 
 
 def refuse_plans_own(wall: Path, written: Iterable[Path]) -> None:
     """Refuse to write over what `plan` drew of a wall, when it is in that plan's folder (E129)."""
     folder = plan_file(wall).parent
-    if not (folder / "plan.json").is_file():
-        return
-    path = _first_of([folder / name for name in DRAWN], written)
-    if path is not None:
+    if (folder / "plan.json").is_file():
         what = "belongs to the plan, and is not replaced by what is made of its wall."
-        raise refusal(path, what, "Choose another folder with -o.")
+        drawn = [folder / name for name in DRAWN]
+        _refuse_over(drawn, written, what, "Choose another folder with -o.")
 
 
 def refuse_among_masks(stones: Path, written: Iterable[Path]) -> None:

@@ -145,11 +145,6 @@ class Earlier:
     state: SearchState | None = None  # where its search stands, which goes on whatever the plan is
     begun: bool = False  # whether there is anything of it
 
-    @property
-    def finished(self) -> bool:
-        """Whether there is nothing to go on with."""
-        return self.plan is not None and self.plan.stopped not in UNFINISHED
-
     def tell(self) -> None:
         """Say what is gone on with."""
         if self.state is not None:

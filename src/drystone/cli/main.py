@@ -81,7 +81,7 @@ def _called(words: Sequence[str]) -> int:
     named = [Path(one) for one in vars(arguments).values() if isinstance(one, str)]
     new = {one for path in named for one in (path, *path.parents) if not os.path.exists(one)}  # noqa: PTH110 - raises nothing
     try:
-        code = int(arguments.run(arguments))
+        code = int(arguments.run(arguments) or ExitCode.DONE)
     except BaseException:
         # What was made for files that were not written goes again.
         for folder in (folder for place in new for folder, *_ in os.walk(place, topdown=False)):

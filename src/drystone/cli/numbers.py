@@ -39,35 +39,27 @@ LEAST_M, MOST_M = 0.01, 2.0
 """Median stones that people build with, metres."""
 
 
-def whole_from(least: int) -> Callable[[str], int]:
-    """Return a reader of whole numbers, `least` or more."""
-
-    def read(text: str) -> int:
-        try:
-            value = int(text)
-        except ValueError:
-            value = least - 1
-        if value < least:
-            raise argparse.ArgumentTypeError(f"{text!r} is not a whole number of {least} or more")
-        return value
-
-    return read
-
-
-def _number(text: str) -> float:
+def _number(text: str, kind: Callable[[str], float] = float) -> float:
     try:
-        return float(text)
+        return kind(text)
     except ValueError:
         return math.nan
 
 
-def _reader(wrong: str, fits: Callable[[float], bool]) -> Callable[[str], float]:
+def _reader(
+    wrong: str, fits: Callable[[float], bool], kind: Callable[[str], float] = float
+) -> Callable[[str], float]:
     def read(text: str) -> float:
-        if not fits(value := _number(text)):
+        if not fits(value := _number(text, kind)):
             raise argparse.ArgumentTypeError(f"{text!r} is {wrong}")
         return value
 
     return read
+
+
+def whole_from(least: int) -> Callable[[str], float]:
+    """Return a reader of whole numbers, `least` or more."""
+    return _reader(f"not a whole number of {least} or more", lambda value: value >= least, int)
 
 
 finite = _reader("not a finite number", math.isfinite)

@@ -7,7 +7,7 @@ from importlib import import_module
 from itertools import chain
 from typing import Any, NamedTuple, NoReturn
 
-from drystone.errors import ExitCode, UsageError, meant
+from drystone.errors import UsageError, meant
 
 GROUP = "drystone.commands"
 """Of entry points; each names a :class:`Command`."""
@@ -119,7 +119,7 @@ def build_parser(words: Sequence[str] | None = None) -> argparse.ArgumentParser:
     parser.add_argument("-h", "--help", action="help", help=hidden)
     parser.add_argument("--version", action=_Version, nargs=0, help=hidden)
     listed = parser.add_subparsers(prog="drystone", dest="command", metavar="COMMAND", help=hidden)
-    parser.set_defaults(run=lambda _: _print_help(parser))
+    parser.set_defaults(run=lambda _: parser.print_help())
     for name, text in texts.items():
         sub = listed.add_parser(name, description=text)
         if asked in (None, name):
@@ -149,11 +149,6 @@ def list_only(command: argparse.ArgumentParser, *names: str) -> None:
     for action in command._actions:  # noqa: SLF001 - argparse has no other way
         if action.option_strings and not {"-h", *names} & {*action.option_strings}:
             action.help = argparse.SUPPRESS
-
-
-def _print_help(parser: argparse.ArgumentParser) -> int:
-    parser.print_help()
-    return ExitCode.DONE
 
 
 class _Parser(argparse.ArgumentParser):

@@ -22,6 +22,7 @@ from drystone.io.plan_folder import write_plan_folder
 from drystone.model.site import Site
 from drystone.model.stone import StoneSet
 from drystone.model.stone_size import median_sides, sides_px
+from drystone.planner.events import UNFINISHED
 from drystone.planner.workshop import fitting_stones
 from drystone.search.interrupts import held
 from drystone.search.plan_result import PlanResult
@@ -52,7 +53,7 @@ def plan_and_write(request: PlanRequest, *, prepared: bool = False) -> ExitCode:
     """Plan a wall, write all files, print the summary; `prepared` when the folder is locked."""
     stones, folder, photo = request.stones, request.folder, request.photo
     earlier = keeping.earlier_run(request)
-    if earlier.plan is not None and earlier.finished:
+    if earlier.plan is not None and earlier.plan.stopped not in UNFINISHED:
         # A run that was killed at its very end has left its lock, which goes with this one.
         left = (folder / LOCK).exists() and not prepared
         with locked(folder, choice.PLACES) if left else nullcontext():
@@ -84,7 +85,7 @@ def plan_and_write(request: PlanRequest, *, prepared: bool = False) -> ExitCode:
         keeper = keeping.Keeper(folder, keeping.made_of(request), photo)
         keeper.begin(earlier.state)
         _announce(request)
-        seconds = None if request.first_whole else request.seconds
+        seconds = request.options.time
         bar = step_bar(len(stones), request.settings, seconds, quiet=request.quiet)
         with bar as callbacks:
             result = plan_wall(
@@ -97,7 +98,7 @@ def plan_and_write(request: PlanRequest, *, prepared: bool = False) -> ExitCode:
                 px_per_m=request.px_per_m,
                 budget=request.settings.search.budget,
                 seconds=math.inf if request.seconds is None else request.seconds,
-                first_whole=request.first_whole,
+                first_whole=seconds is None,  # where time is but a guard, it is built to its end
                 n_jobs=request.options.jobs,
                 callbacks=callbacks,
                 built=None if earlier.plan is None else rebuild_wall(earlier.plan, stones),
@@ -117,7 +118,7 @@ def _announce(request: PlanRequest) -> None:
     stones, px_per_m = request.stones, request.px_per_m
     if not request.quiet:
         walls = request.settings.search.budget
-        seconds = None if request.first_whole or walls == 1 else request.seconds
+        seconds = None if walls == 1 else request.options.time
         more = "" if seconds is not None or walls == 1 else f", {walls} walls"
         more += "" if walls == 1 else " (--time, --budget)"
         note(f"{read_line(stones, request.wall, px_per_m, seconds)}{more}")

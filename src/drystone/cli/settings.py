@@ -256,7 +256,6 @@ class PlanRequest:
     method: str  # the one that the plan names
     settings: PlannerSettings
     seconds: float | None  # time limit of the search
-    first_whole: bool  # whether that is but a guard, and the first wall is built to its end
     folder: Path
     photo: Path | None  # of the stones, to be put beside the plan
     quiet: bool
@@ -280,7 +279,6 @@ def request_from(
         scale=arguments.scale or working_scale(stones),
         method=recorded_method(arguments),
         seconds=seconds,
-        first_whole=arguments.time is None,
         folder=Path(arguments.output),
         photo=photo,
         quiet=arguments.quiet or arguments.json,

@@ -11,7 +11,7 @@ from drystone.cli.reading import add_wall, reading_from
 from drystone.contacts.blocks import notices_of
 from drystone.contacts.given import model_from_json, polygons_from_json
 from drystone.contacts.outlines import model_of_traced
-from drystone.craft.finding import Finding, Limit
+from drystone.craft.finding import Limit
 from drystone.craft.look import RULES, UNSEEN, CraftReport, look
 from drystone.craft.masonry import Masonry
 from drystone.errors import ExitCode, UsageError, counted
@@ -95,7 +95,11 @@ def _print(report: CraftReport, arguments: argparse.Namespace) -> None:
     print(f"{arguments.wall_path}: {counted(len(masonry.stones), 'stone')}{also}")
     width = max(len(rule.title) for rule in RULES.values())
     for finding in report.findings.values():
-        said = _number(finding, explain=arguments.explain)
+        said = finding.note if finding.number is None else finding.amount
+        if finding.number is not None and arguments.explain:
+            rule, limit = finding.rule, finding.limit
+            sign = ">=" if rule.higher_is_better else "<="
+            said += f" (good {sign} {limit.good:g}, fair {sign} {limit.fair:g}): {rule.meaning}"
         print(f"{finding.rule.title:<{width}}  {finding.verdict:<10}  {said}")
         if finding.note and finding.number is not None:
             print(f"{'':<{width}}    {finding.note}")
@@ -106,13 +110,3 @@ def _print(report: CraftReport, arguments: argparse.Namespace) -> None:
         if arguments.cases and left > 0:
             print(f"{'':<{width}}    and {left} more")
     print(UNSEEN)
-
-
-def _number(finding: Finding, *, explain: bool) -> str:
-    """Write the number of a rule; to explain it, with its limits and its meaning."""
-    if finding.number is None or not explain:
-        return finding.note if finding.number is None else finding.amount
-    rule, limit = finding.rule, finding.limit
-    sign = ">=" if rule.higher_is_better else "<="
-    good, fair = f"good {sign} {limit.good:g}", f"fair {sign} {limit.fair:g}"
-    return f"{finding.amount} ({good}, {fair}): {rule.meaning}"
