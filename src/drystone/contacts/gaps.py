@@ -324,8 +324,8 @@ def _near_pixels(labels: Labels, block: int, others: set[int]) -> tuple[int | No
     rows, cols = np.nonzero(cells == block)
     reach = 8
     while True:
-        window = (_slice(rows, reach, cells.shape[0]), _slice(cols, reach, cells.shape[1]))
-        part = cells[window]
+        ends = (slice(max(0, one.min() - reach), one.max() + reach + 1) for one in (rows, cols))
+        part = cells[tuple(ends)]
         strangers = (part != 0) & (part != block)
         for other in others:
             strangers &= part != (-1 if other == GROUND else other)
@@ -342,10 +342,6 @@ def _near_pixels(labels: Labels, block: int, others: set[int]) -> tuple[int | No
         elif whole:
             return None, np.inf
         reach *= 4
-
-
-def _slice(places: NDArray[np.int64], reach: int, size: int) -> slice:
-    return slice(max(0, int(places.min()) - reach), min(size, int(places.max()) + reach + 1))
 
 
 def _near_polygons(
