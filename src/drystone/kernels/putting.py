@@ -32,10 +32,10 @@ LINES = cython.declare(cython.Py_ssize_t, 32)
 def put_down(press, x, start_y, lifts, last):
     """Let a block come to rest, lifted by the least of some ways with which it does.
 
-    The `last` lifts are for what rests with none of the others.  It is moved, and others are
-    pushed, by no more than `most`, and what overlapped it keeps a gap.  Returned is whether it
-    rests, falls, or has no room: it overlaps with all lifts.  Only where it rests, the others lie
-    as they were pushed.
+    The `last` lifts are for what rests with none of the others; it may turn further then.  It is
+    moved, and others are pushed, by no more than `most`, and what overlapped it keeps a gap.
+    Returned is whether it rests, falls, or has no room: it overlaps with all lifts.  Only where it
+    rests, the others lie as they were pushed.
     """
     way: Way = press.block
     pressed: dict = {}
@@ -45,7 +45,7 @@ def put_down(press, x, start_y, lifts, last):
     for way.sticks, some in ((True, lifts), (False, lifts), (True, last)):
         if not way.sticks and not steps:
             continue  # it overlaps wherever it is let go
-        if some is last:
+        if some is last:  # falls are counted from the plan, and it may have been put down askew
             way.most_turn, way.most_shift = 2.0 * way.most_turn, 2.0 * way.most_shift
         steps, least = 0, 0.0
         for lift in some:

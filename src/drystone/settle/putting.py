@@ -22,7 +22,7 @@ LIFTS = (0.0, 0.01, 0.02, 0.04, 0.06, 0.08, 0.1, 0.13, 0.16, 0.2)
 """So much higher, over its size, a block is let go where it overlaps others."""
 
 LAST_LIFTS = (*LIFTS, 0.25, 0.3)
-"""The same for what rests with none of these: on what leans, it may end less high."""
+"""The same for what rests with none of these, and may go twice as far, or end less high."""
 
 STEP, TOUCHING, OVERLAP = 0.01, 0.003, 0.05
 """Over the size: first steps of settling, the gap up to which a contact holds, and how deep a
