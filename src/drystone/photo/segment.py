@@ -136,7 +136,7 @@ def segment(
         raise _no_stones(len(shapes(cut, EDGE)), model)
     causes = {SHADOW: shadows, FAINT: unlike & ~foreground}
     known = stone | (labels > 0)
-    # Stones of which a part, but not all, has the colour of shaded model.
+    # Stones of which a part, but not all, has the colour of shaded ground.
     body = ndimage.binary_opening(alike & (found > 0), iterations=3)
     share = np.bincount(found[body], minlength=found.max() + 1) / np.bincount(found.ravel())
     shaded = np.flatnonzero((share > 0.15) & (share < 0.85) & (np.arange(len(share)) > 0))

@@ -95,8 +95,9 @@ def _by_pair(model: RigidBlockModel, px: float) -> dict[IdPair, list[Interface]]
 
 
 def _same(claimed: list[Interface], found: list[Interface]) -> bool:
-    """Say whether two lists hold the same contacts, in any order; none of `found` comes twice."""
-    met = (any(_meets(face, other) for other in claimed) for face in found)
+    """Say whether two lists hold the same contacts, in any order."""
+    both = ((claimed, found), (found, claimed))
+    met = (any(_meets(one, other) for other in those) for these, those in both for one in these)
     return len(claimed) == len(found) and all(met)
 
 
