@@ -94,6 +94,23 @@ def test_an_overlap_is_pushed_apart_and_nothing_is_thrown():
     assert built.stands
 
 
+def test_who_comes_last_makes_room():
+    """A stone that is put 3 px into its neighbour goes aside; between two, all three are pushed."""
+    stood, came = build_up(single((0, 0, 40, 20), (37, 0, 40, 20))).moves
+    assert (stood.overlap_px, came.overlap_px) == pytest.approx((0.0, 3.0), abs=0.01)
+    assert stood.move_px < 0.2
+    assert came.move_px == pytest.approx(3.0, abs=0.2)
+    between = build_up(single((0, 0, 40, 20), (76, 0, 40, 20), (38, 0, 40, 20)))
+    assert between.stands
+    left, middle, right = (between.outlines[block][:, 0].mean() for block in (1, 3, 2))
+    assert np.diff([left, middle, right]) == pytest.approx(40.0, abs=0.2)
+    # A wedge comes before its stone, which is lifted by it.
+    slab, wedge = (3, rectangle(2, 20, 76, 12)), (9, rectangle(66, 14, 10, 8))
+    lifted = build_up([*single((0, 0, 20, 20), (60, 0, 20, 14)), [slab, wedge]]).moves
+    assert [move.overlap_px for move in lifted[2:]] == pytest.approx([2.0, 0.0], abs=0.01)
+    assert lifted[3].move_px < 0.2
+
+
 def test_what_came_before_may_have_moved():
     """A stone set 3 px too high drops; the next one is put where it was planned all the same."""
     built = build_up(single((0, 3, 40, 20), (0, 23, 40, 20)))
@@ -126,7 +143,7 @@ def test_faces_that_touch_exactly_are_not_found_to_be_deep_in_each_other():
     for size in np.linspace(20, 300, 40):
         scene = EngineScene({**outlines, 3: rectangle(1000, 0, size, size)}, 0.58)
         table = TiltingTable(scene, ROUNDED, placed=(1,))
-        assert table.place(scene, 2) < 1e-6
+        assert table.put_down(scene, 2) < 1e-6
 
 
 def test_the_tilt_starts_where_the_wall_came_to_rest():

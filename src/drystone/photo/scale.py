@@ -3,6 +3,7 @@
 import math
 from collections import Counter
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 from scipy.optimize import least_squares
@@ -15,6 +16,18 @@ from drystone.photo.view import SQUARE, View, apply, depth, jacobian, refuse_hor
 
 Piece = tuple[Points, Points]
 """Points on a rigid piece of paper, (n, 2): in the photograph, px, and on the paper, metres."""
+
+
+class CommonPlane(NamedTuple):
+    """The plane on which pieces of paper have their sizes and shapes."""
+
+    to_plane: Points  # (3, 3): homography from the photograph to the plane, metres
+    # Of each piece (n, 2): the way on the plane from its points, where it fits best, to those of
+    # the photograph, metres.
+    off_m: list[Points]
+    sizes: Points  # (n,): those that would fit better, over those given; 1 for the largest piece
+    surer: float  # how much better they fit (F statistic): near to 1 for noise, far above if wrong
+
 
 LEAST_SIDE_PX, SMALL_SIDE_PX = 40.0, 100.0
 """Smaller markers are left out (W171); the scale is in doubt when none is larger (W172)."""
@@ -53,8 +66,8 @@ def scale_and_view(
     )
     if fitted is None:
         raise _disagreement("No view of the ground gives all of them their size")
-    to_plane, off_m, sizes, surer = fitted
-    residual_m = _believed(papers, layout, off_m, sizes, surer)
+    to_plane = fitted.to_plane
+    residual_m = _believed(papers, layout, fitted)
     percent = 100.0 * residual_m / layout.side_m
     largest = max(marker.side_px for marker in used)
     if largest < SMALL_SIDE_PX:
@@ -165,14 +178,13 @@ def _too_few(
 def _believed(
     papers: Sequence[Sequence[FoundMarker]],
     layout: MarkerLayout,
-    off_m: Sequence[Points],
-    sizes: Points,
-    surer: float,
+    fitted: CommonPlane,
 ) -> float:
     """Return the residual of all corners, metres; refuse markers that disagree (E172)."""
     # Perspective can hide from the residual that sizes differ.
+    sizes = fitted.sizes
     spread = 100.0 * (float(sizes.max() / sizes.min()) - 1.0)
-    if surer > SURER and spread > MOST_SIZE_PERCENT:
+    if fitted.surer > SURER and spread > MOST_SIZE_PERCENT:
         low, high = (papers[int(one)][0].id for one in (sizes.argmin(), sizes.argmax()))
         raise _disagreement(
             f"Marker {high} seems to be {spread:.1f} % larger than marker {low}, and both should "
@@ -180,7 +192,7 @@ def _believed(
         )
     square_m = {
         marker.id: (off[4 * i : 4 * i + 4] ** 2).sum(axis=1)
-        for paper, off in zip(papers, off_m, strict=True)
+        for paper, off in zip(papers, fitted.off_m, strict=True)
         for i, marker in enumerate(paper)
     }
     rms_m = {one: math.sqrt(float(square.mean())) for one, square in square_m.items()}
@@ -215,17 +227,12 @@ def _markers(ids: Sequence[int]) -> str:
     return f"marker{'s' * (len(ids) > 1)} {', '.join(map(str, ids))}"
 
 
-def fit_plane(pieces: Sequence[Piece]) -> tuple[Points, list[Points], Points, float] | None:
+def fit_plane(pieces: Sequence[Piece]) -> CommonPlane | None:
     """Find the plane for which every piece has its size and shape.
 
     The sum of squares of the distances, in px of the photograph, between the points that were
     seen and those of the pieces is made least over the homography and the poses of the pieces
     (turned and moved, never mirrored).  None when no homography of any meaning was found.
-
-    Returned is the homography from the photograph to the plane, metres.  Then, of each piece, the
-    way on the plane from its points where it fits best to those of the photograph, metres.  Then
-    (n,) sizes that would fit better, over those given, 1 for the largest piece.  At last how much
-    better they fit (F statistic): near to 1 for noise, far above for wrong sizes.
     """
     # Numbers near to 1 for the solver: px and metres are unlike by orders of magnitude.
     every_px = np.concatenate([seen_px for seen_px, _ in pieces])
@@ -254,7 +261,7 @@ def fit_plane(pieces: Sequence[Piece]) -> tuple[Points, list[Points], Points, fl
         on_plane = apply(to_plane, seen_px)
         turn, shift = rigid(flat_m, on_plane)
         off_m.append(on_plane - (flat_m @ turn.T + shift))
-    return to_plane, off_m, sizes, surer
+    return CommonPlane(to_plane, off_m, sizes, surer)
 
 
 def _least(pieces: Sequence[Piece], to_seen: Points) -> tuple[float, Points, Points] | None:

@@ -94,10 +94,9 @@ def build_up(
 ) -> BuildUp:
     """Put stones on a level ground one after the other and let each come to rest.
 
-    Every block comes where it was planned, whatever those before it have done since.  Where it
-    overlaps them the engine pushes both apart, slowly and without giving them speed.  Groups come
-    in the order of placement, the stone of each first; `on_group` is told the number of those that
-    stand.
+    Every block comes where it was planned, whatever those before it have done since, and is brought
+    apart from what it overlaps there.  Groups come in the order of placement, the stone of each
+    first; `on_group` is told the number of those that stand.
     """
     settings = settings or BuildSettings()
     if not any(groups):
@@ -110,8 +109,8 @@ def build_up(
     overlaps = dict.fromkeys(scene.shapes, 0.0)
     for number, group in enumerate(groups, 1):
         found_moved.append(watch.look(table))
-        for block, _ in group:
-            overlaps[block] = table.place(scene, block) * scene.length
+        for block, _ in reversed(group):  # wedges come before their stone
+            overlaps[block] = table.put_down(scene, block) * scene.length
         if not _rest(table, watch, settings):
             restless.append(number)
         if first_fall is None:

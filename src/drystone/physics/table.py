@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable
 from math import atan, cos, sin, sqrt
+from operator import itemgetter
 from typing import Any, Self
 
 import numpy as np
@@ -15,6 +16,10 @@ from drystone.physics.scene import EngineScene, EngineSettings
 
 GROUND_THICKNESS = 2.0
 """In mean block sizes; thick enough that nothing gets through."""
+
+APART, STEP, STEPS = 0.2, 0.02, 60
+"""A block is brought apart from what it overlaps by so much at most, by so much in a step (both
+over its size), in so many steps."""
 
 
 class TiltingTable:
@@ -43,11 +48,8 @@ class TiltingTable:
         ground = np.array([[left, low], [right, low], [right, 0.0], [left, 0.0]])
         self._add_shape(self._space.static_body, ground, scene.mu)
 
-    def place(self, scene: EngineScene, block: int) -> float:
-        """Put a block where its scene has it, whatever the others have done since.
-
-        Returns how deep it lies in others, or in the ground, before the engine pushes them apart.
-        """
+    def place(self, scene: EngineScene, block: int) -> None:
+        """Put a block where its scene has it, whatever the others have done since."""
         engine = load_engine()
         shape = scene.shapes[block]
         centre = np.array(shape.centroid.coords[0])
@@ -63,16 +65,36 @@ class TiltingTable:
         self._space.add(body)
         for part in convex_parts(corners):
             self._add_shape(body, part, scene.mu)
-        return max(
-            (
-                -point.distance
+
+    def put_down(self, scene: EngineScene, block: int) -> float:
+        """Place a free block, and bring it apart from what it overlaps there.
+
+        Each step goes along the normal of the deepest contact.  Between two others it may not come
+        free: it ends halfway, and the engine pushes all of them apart, slowly.  Returns how deep it
+        lay in others, or in the ground.
+        """
+        self.place(scene, block)
+        body = self._free()[-1]
+        size = scene.shapes[block].area ** 0.5 / scene.length
+        start, first = body.position, 0.0
+        for step in range(STEPS):
+            hits = [
+                (-point.distance, hit.contact_point_set.normal)
                 for part in body.shapes
                 for hit in self._space.shape_query(part)
                 if hit.shape is not None and hit.shape.body is not body
                 for point in hit.contact_point_set.points
-            ),
-            default=0.0,
-        )
+            ]
+            depth, normal = max(hits, key=itemgetter(0), default=(0.0, None))
+            first = first if step else max(depth, 0.0)
+            if depth <= self._settings.slop:
+                break
+            now = body.position - min(depth, STEP * size) * normal
+            if (now - start).length > APART * size:
+                break
+            body.position = now
+            self._space.reindex_shapes_for_body(body)
+        return first
 
     def _add_shape(self, body: Any, corners: Points, mu: float) -> None:
         radius = self._settings.corner_radius
