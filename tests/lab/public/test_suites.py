@@ -8,37 +8,21 @@ from drystone.errors import UsageError
 from drystone_lab.public import suites
 from drystone_lab.public.suites import flat_changes, method_named, walls_of
 
-GENERATED = [wall for wall in walls_of("all") if wall.source.kind != "published"]
-
-FIXED = {1: "067eeec5f51964e1"}  # 5a630340fd2a3ede before the suite "noise" was added
-"""By version: of everything that makes the walls of all suites.  A new version is a new line."""
+FIXED = {1: "04f156b565ce5721"}
+"""By version: of everything that makes the walls of all suites, and of the area of the stones that
+the generators make of it.  A new version is a new line.
+"""
 
 
 def test_nothing_changes_without_a_new_version():
     made = ("kind", "name", "seed", "settings")
     text = repr([
         (wall.suite, wall.name, *(getattr(wall.source, name) for name in made),
-         float(wall.width), float(wall.height), wall.scale)
+         float(wall.width), float(wall.height), wall.scale,
+         wall.source.kind != "published" and wall.source.stones(None).total_area_px)
         for wall in walls_of("all")
     ])  # fmt: skip
     assert hashlib.sha256(text.encode()).hexdigest()[:16] == FIXED[suites.SUITE_VERSION]
-
-
-AREAS_PX = {
-    "fourier 20 round": 56659, "fourier 20 long": 57760, "fourier 60 round": 169969,
-    "fourier 60 long": 173296, "fourier 120 round": 339983, "fourier 120 long": 346587,
-    "polygons 20 %": 467992, "polygons 50 %": 467968, "polygons 80 %": 468062,
-    "rubble 30": 76177, "rubble 60": 151960, "rubble 120": 304648,
-    "bricks 2:1": 8640, "bricks 3:1": 20736, "bricks 3:1 and halves": 15552,
-    "sizes 20": 58492, "sizes 50": 146257, "sizes 100": 292558, "sizes 200": 585197,
-    "sizes 500": 1462495,
-}  # fmt: skip
-"""Of all stones, source px: the generators make the same ones as before."""
-
-
-@pytest.mark.parametrize("wall", GENERATED, ids=lambda wall: wall.name)
-def test_generators_make_the_same_stones(wall):
-    assert wall.source.stones(None).total_area_px == AREAS_PX[wall.name]
 
 
 def test_all_walls_and_some_alone():
