@@ -272,18 +272,6 @@ def test_bricks_fill_their_wall_by_every_method():
     assert said[2].startswith("bricks, search, seed 0, 0.02 s: 9 of 9 stones, F_SF 1, F_AV ")
 
 
-def kept_tables(path, by_method, **asked):
-    """Return the tables of results that are kept: of the seeds from 3 after each of the times."""
-    runs = {
-        SearchRun("bricks", method, 3 + k, seconds): one
-        for (method, seconds), found in by_method.items()
-        for k, one in enumerate(found)
-    }
-    search.append_results(path, runs.items())
-    usual = {"quick": True, "seed": 3, "seeds": 2, "only": ("bricks",), "runs": path}
-    return search.run(BenchSettings(**(usual | asked)))
-
-
 def test_each_time_has_its_medians_and_differences_of_runs_with_its_settings(tmp_path):
     by_method = {
         ("restarts, mu = 0.5", 1.0): [result(merit=1.0, F_AH=4.0), result(merit=3.0, F_AH=4.0)],
@@ -295,9 +283,18 @@ def test_each_time_has_its_medians_and_differences_of_runs_with_its_settings(tmp
         ("search, mu = 0.5", 2.0): [result(merit=9.0)] * 2,
         ("search", 2.0): [result(merit=7.0)] * 2,  # of other settings
     }
-    asked = {"seconds": (2.0, 1.0, 2.0), "policies": ("search", "restarts")}
-    path = tmp_path / "runs.csv"
-    tables = kept_tables(path, by_method, **asked, changes=(("mu", 0.5),))
+    runs = {
+        SearchRun("bricks", method, 3 + k, seconds): one
+        for (method, seconds), found in by_method.items()
+        for k, one in enumerate(found)
+    }
+    search.append_results(tmp_path / "runs.csv", runs.items())
+    tables = search.run(
+        BenchSettings(
+            quick=True, seed=3, seeds=2, only=("bricks",), runs=tmp_path / "runs.csv",
+            seconds=(2.0, 1.0, 2.0), policies=("search", "restarts"), changes=(("mu", 0.5),),
+        )
+    )  # fmt: skip
     titles = ("Best walls after {} s of CPU time", "What the search has more after {} s")
     assert [table.title.split(",")[0] for table in tables[:4]] == [
         title.format(seconds) for seconds in (1, 2) for title in titles

@@ -99,19 +99,6 @@ def test_suites_and_policies_are_named_once(run):
     assert len(set(names)) == len(names)
 
 
-def test_both_spellings_are_the_same(run):
-    ran = run(*BRICKS, "--json")
-    assert (ran.code, "2 of 2 walls" in ran.err) == (0, True)
-    named, positional = (
-        {title: rows for title, rows in tables.items() if not title.startswith("Seconds")}
-        for tables in (ran.json(), run("bench", "bricks", *BRICKS[3:], "--json").json())
-    )
-    assert any(title.startswith("Ranking") for title in named)
-    assert named == positional
-    walls = named["Walls: mean over seeds, standard deviation (±), best"]
-    assert walls[0]["placed share"] == 1.0
-
-
 def test_settings_hold_for_all(run, tmp_path):
     settings = tmp_path / "full.toml"
     settings.write_text('sampling = "full"\n', encoding="utf-8")
@@ -123,11 +110,18 @@ def test_settings_hold_for_all(run, tmp_path):
     assert "E138" in run(*BRICKS, "--settings", settings).err
 
 
-def test_a_store_has_a_history(run, tmp_path):
+def test_both_spellings_are_the_same_and_a_store_has_a_history(run, tmp_path):
     store = tmp_path / "store"
     assert "E138" in run("bench", "--history").err
     assert "no runs" in run("bench", "--history", "--store", store).err
-    assert run(*BRICKS, "--store", store).code == 0
+    ran = run(*BRICKS, "--store", store, "--json")
+    assert (ran.code, "2 of 2 walls" in ran.err) == (0, True)
+    positional = run("bench", "bricks", *BRICKS[3:], "--store", store, "--json")
+    tables = ran.json()
+    assert tables == positional.json()
+    assert any(title.startswith("Ranking") for title in tables)
+    walls = tables["Walls: mean over seeds, standard deviation (±), best"]
+    assert walls[0]["placed share"] == 1.0
     assert {path.name for path in store.iterdir()} >= {"runs.csv", "runs"}
     ran = run("bench", "--history", "--store", store, "--json", "-o", tmp_path / "pictures")
     (rows,) = ran.json().values()

@@ -3,6 +3,7 @@
 import sys
 from dataclasses import replace
 from importlib.metadata import version
+from itertools import product
 
 import pytest
 
@@ -41,29 +42,25 @@ def figures(tables):
     return [table.records() for table in tables if not table.title.startswith("Seconds")]
 
 
-def test_every_method_builds_every_wall_with_every_seed(counted):
-    walls, everything, seconds, *_ = run_public(replace(SETTINGS, seed=3))
-    found = [(row["wall"], row["method"], row["seeds"]) for row in walls.records()]
-    assert found == [("bricks 2:1", "paper", 2), ("bricks 2:1", "random", 2)]
-    assert {(spec.seed, dict(spec.changes).get("selection_rule")) for spec in counted} == {
-        (3, None), (4, None), (3, "random"), (4, "random"),
-    }  # fmt: skip
-    # All bricks of the paper's method find their place.
-    assert walls.records()[0]["placed share"] == 1.0
-    assert all(row["s"] > 0 for row in seconds.records())
-    assert len(everything.rows) == 2
-
-
-def test_runs_of_a_store_are_not_done_again(tmp_path, counted):
-    settings = replace(SETTINGS, store=tmp_path, seeds=1)
+def test_every_method_builds_with_every_seed_and_runs_of_a_store_are_not_done_again(
+    tmp_path, counted
+):
+    settings = replace(SETTINGS, store=tmp_path, seeds=1, seed=3)
     before = figures(run_public(settings))
-    for changed, count in (({}, 2), ({"seeds": 2}, 4), ({"again": True}, 6)):
-        found = figures(run_public(replace(settings, **changed)))
+    for changed, count in (({}, 2), ({"seeds": None}, 4), ({"again": True}, 6)):
+        walls, everything, seconds, *_ = tables = run_public(replace(settings, **changed))
         assert len(counted) == count
-        assert (found == before) == ("seeds" not in changed)
+        assert (figures(tables) == before) == ("seeds" not in changed)
+        told = [(row["wall"], row["method"], row["seeds"]) for row in walls.records()]
+        each = 2 if "seeds" in changed else 1
+        assert told == [("bricks 2:1", "paper", each), ("bricks 2:1", "random", each)]
+        # All bricks of the paper's method find their place.
+        assert walls.records()[0]["placed share"] == 1.0
+        assert (len(everything.rows), all(row["s"] > 0 for row in seconds.records())) == (2, True)
+    rules = {(spec.seed, dict(spec.changes).get("selection_rule")) for spec in counted}
+    assert rules == set(product((3, 4), (None, "random")))
     rows = kept_runs(tmp_path)
-    runs = [("paper", 0), ("paper", 1), ("random", 0), ("random", 1)]
-    assert [(row.method, row.seed) for row in rows] == runs
+    assert [(row.method, row.seed) for row in rows] == [*product(("paper", "random"), (3, 4))]
     assert {row.version for row in rows} == {version("drystone")}
     assert len(list((tmp_path / "runs").iterdir())) == 4
     row = rows[0]
