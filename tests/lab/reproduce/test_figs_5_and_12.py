@@ -1,12 +1,12 @@
 """Fig. 5, clusters of like stones, and Fig. 12, stones as rigid blocks: on small walls."""
 
 import math
-from itertools import combinations
 
 import numpy as np
 import pytest
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
+from scipy.cluster.hierarchy import fcluster, linkage
 
 from drystone.clusters import stone_features
 from drystone.contacts.blocks import model_from_labels
@@ -33,26 +33,15 @@ def features(stones):
     return stone_features(stones, PoseBook())
 
 
-def naive_ward(features, threshold):
-    """Join the two clusters at the least Ward distance until it is above the threshold."""
-    groups = [[k] for k in range(len(features))]
-
-    def distance(pair):
-        a, b = (features[groups[k]] for k in pair)
-        weight = 2 * len(a) * len(b) / (len(a) + len(b))
-        return math.sqrt(weight) * math.dist(a.mean(axis=0), b.mean(axis=0))
-
-    while len(groups) > 1:
-        i, j = least = min(combinations(range(len(groups)), 2), key=distance)
-        if distance(least) > threshold:
-            break
-        groups[i] += groups.pop(j)
-    return {frozenset(group) for group in groups}
+def clusters_of(features, threshold):
+    """The cluster of each stone as SciPy numbers them."""
+    return fcluster(linkage(features, "ward"), threshold, criterion="distance")
 
 
-def test_clusters_are_those_of_joining_step_by_step_at_every_threshold(outputs, stones, features):
+def test_clusters_are_those_of_ward_at_every_threshold(outputs, stones, features):
     ids = [stone.id for stone in stones]
-    expected = {frozenset(ids[k] for k in group) for group in naive_ward(features, 0.2)}
+    of_each = clusters_of(features, 0.2)
+    expected = {frozenset(np.array(ids)[of_each == one].tolist()) for one in of_each}
     table = rows(outputs["fig5"], "clusters")
     assert {frozenset(map(int, row["ids"].split())) for row in table} == expected
     for row in table:
@@ -62,14 +51,14 @@ def test_clusters_are_those_of_joining_step_by_step_at_every_threshold(outputs, 
         assert (row["mean eccentricity"], row["mean size"]) == pytest.approx(mean, rel=2e-3)
     (row,) = rows(outputs["fig5"], "thresholds")
     for distance in fig5.DISTANCES:
-        assert row[f"{distance:g}"] == len(naive_ward(features, distance)), distance
+        assert row[f"{distance:g}"] == clusters_of(features, distance).max(), distance
     drawn = gids(outputs["fig5"], "fig5")
     assert all(drawn.count(f"stone-{stone.id}") == 2 for stone in stones)
     # The span of thresholds has the paper's count.
     grouped = fig5.ClusteredStones.of("rubble", stones)
     low, high = grouped.between(7)
-    assert len(naive_ward(features, (low + high) / 2)) == 7
-    assert len(naive_ward(features, low - 2e-3)) > 7 > len(naive_ward(features, high + 2e-3))
+    counts = [clusters_of(features, at).max() for at in (low - 2e-3, (low + high) / 2, high + 2e-3)]
+    assert counts[0] > counts[1] == 7 > counts[2]
 
 
 def test_the_stones_pr_fall_into_the_paper_s_clusters(tmp_path, data_dir):
