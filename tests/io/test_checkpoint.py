@@ -224,18 +224,13 @@ def enter(folder):
         assert (folder / LOCK).exists()
 
 
-def test_a_second_run_is_refused_until_the_first_has_ended(tmp_path):
+def test_a_second_run_is_refused_until_the_first_has_ended_also_when_it_is_killed(tmp_path):
     with locked(tmp_path):
         for _ in range(2):
             with pytest.raises(UsageError, match="E149") as caught:
                 enter(tmp_path)
             assert caught.value.where == str(tmp_path)
-    for _ in range(2):
-        assert list(tmp_path.iterdir()) == []
-        enter(tmp_path)
-
-
-def test_a_lock_ends_with_its_process(tmp_path):
+    assert list(tmp_path.iterdir()) == []
     command = [sys.executable, "-c", HOLDING, str(tmp_path)]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as other:  # noqa: S603
         assert other.stdout.readline() == "locked\n"
