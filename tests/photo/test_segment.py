@@ -351,16 +351,6 @@ def sand(rng):
     return picture
 
 
-def room(rng):
-    """Boxes of all sizes and colours in front of each other."""
-    picture = rgb(concrete(rng))
-    for _ in range(60):
-        row, col = rng.integers(0, 400), rng.integers(0, 540)
-        high, wide = rng.integers(10, 180, 2)
-        picture[row : row + high, col : col + wide] = rng.integers(20, 240, 3)
-    return picture
-
-
 def sheet(rng):
     """Stones on a red sheet that lies on a beach."""
     picture = pebbles(rng)
@@ -376,7 +366,7 @@ def installed(name):
         return np.asarray(picture.convert("RGB"))
 
 
-@pytest.mark.parametrize("kind", [pebbles, paint, sand, room, sheet, "brick", "gravel", "grass"])
+@pytest.mark.parametrize("kind", [pebbles, paint, sand, sheet, "brick", "gravel", "grass"])
 def test_what_is_no_photograph_of_stones_laid_out_is_in_doubt_or_refused(kind):
     """Also parts of walls and beds."""
     if isinstance(kind, str):
