@@ -163,37 +163,23 @@ def test_walls_are_told_of_now_and_then():
 ORDER = ("fig5", "fig13", "table2")
 
 
-def table(name, rows):
-    return {
-        "name": name, "file": f"{name}.csv", "title": f"Table of {name}",
-        "columns": ["wall", "F_SF <share>"], "rows": [["R", 0.123456789 + k] for k in range(rows)],
-        "notes": ["A note & more."],
-    }  # fmt: skip
-
-
-def record(name, *, quick=False, seed=1):
-    return {
-        "name": name, "title": "walls <of> stones", "section": "§5.1",
-        "request": {"version": "9.8", "quick": quick, "seed": seed},
-        "made": {
-            "date": f"2026-01-0{seed} 10:00 UTC", "machine": "Linux x86_64, 2 cores",
-            "python": "3.11.7", "kernels": "compiled", "packages": {"numpy": "2.4"},
-        },
-        "taken": {"seconds": 1.0, "walls": 20, "wall_seconds": 90.0},
-        "paper": ["F_SF is .88 & more."], "ours": ["It is .89 here."],
-        "tables": [table("short", 2), table("long", driver.LONG + 1)],
-        "times": [table("t_times", 1)],
-        "pictures": [
-            {"name": "p", "png": "p.png", "svg": "p.svg", "width_px": 1000, "height_px": 500,
-             "caption": "Walls of 'R'."},
-        ],
-    }  # fmt: skip
-
-
 def test_the_report_of_all_and_of_one(tmp_path):
-    records = [record("table2", quick=True, seed=3), record("fig5")]
+    (made,) = make(tmp_path, "fig5")
+    one = made.record
+    rows = [["R", 0.123456789 + k] for k in range(driver.LONG + 1)]
+    long = {"title": "Table of long", "columns": ["<wall>", "F_SF"], "rows": rows}
+    first, later = (
+        one | {
+            "name": name, "title": "walls <of> stones",
+            "tables": [*one["tables"], one["tables"][0] | long],
+            "request": {"version": "9.8", "quick": quick, "seed": seed},
+            "made": one["made"] | {"date": f"2026-01-0{seed} 10:00", "machine": "Linux, 2 cores"},
+            "taken": {"seconds": 1.0, "walls": 20, "wall_seconds": 90.0},
+        }
+        for name, quick, seed in (("fig5", False, 1), ("table2", True, 3))
+    )  # fmt: skip
     misses = {"fig13": {"title": "masons", "section": "§5.1", "error": "E100 R.png: is not there."}}
-    path = driver.write_page(tmp_path / "index.html", records, misses, ORDER)
+    path = driver.write_page(tmp_path / "index.html", [later, first], misses, ORDER)
     page = Page(path.read_text(encoding="utf-8"))
     # In the order of the paper
     heads = [attributes["id"] for attributes in page.all("h2") if "id" in attributes]
@@ -201,22 +187,24 @@ def test_the_report_of_all_and_of_one(tmp_path):
     links = [attributes["href"] for attributes in page.all("a")]
     assert links[:3] == [f"#{name}" for name in ORDER]
     assert "Fig. 5: walls <of> stones" in page.text
-    assert "F_SF is .88 & more." in page.text
-    assert page.text.index("In the paper") < page.text.index("It is .89 here.")
+    assert "Walls & <joints>." in page.text
+    assert page.text.index("In the paper") < page.text.index("Walls of bricks.")
     # What it was made with
     assert (
         "2 of 3 were made, 1 as quick versions and 1 in full, with drystone 9.8, "
-        "2026-01-01 to 2026-01-03, on Linux x86_64, 2 cores." in page.text
+        "2026-01-01 to 2026-01-03, on Linux, 2 cores." in page.text
     )
     assert "20 walls planned in 1 min 30 s" in page.text
     assert "40 in 3 min 0 s" in page.text
     assert "E100 R.png: is not there." in page.text
     # Files are linked where they are, and pictures have texts.
-    assert [image["src"] for image in page.all("img")] == ["fig5/p.png", "table2/p.png"]
+    pictures = ["fig5/filling.png", "table2/filling.png"]
+    assert [image["src"] for image in page.all("img")] == pictures
+    size = [str(one["pictures"][0][side]) for side in ("width_px", "height_px")]
     for image in page.all("img"):
-        assert "Walls of 'R'." in image["alt"]
-        assert (image["width"], image["height"]) == ("1000", "500")
-    files = ("p.png", "p.svg", "short.csv", "long.csv", "t_times.csv", "fig5.json")
+        assert "Filling over 1." in image["alt"]
+        assert [image["width"], image["height"]] == size
+    files = ("filling.png", "filling.svg", "walls.csv", "walls_times.csv", "fig5.json")
     assert {f"fig5/{file}" for file in files} <= {*links}
     assert not any("://" in link for link in links)
     # Long tables are folded.
@@ -224,10 +212,10 @@ def test_the_report_of_all_and_of_one(tmp_path):
     assert f"Table of long ({driver.LONG + 1} rows)" in page.text
     assert "0.12346" in page.text
     assert "0.123456789" not in page.text
-    alone = driver.write_item_page(tmp_path / "one.html", record("fig5"))
-    one = Page(alone.read_text(encoding="utf-8"))
-    assert one.all("a")[0]["href"] == "../index.html#fig5"
-    assert [image["src"] for image in one.all("img")] == ["p.png"]
+    alone = driver.write_item_page(tmp_path / "one.html", first)
+    page = Page(alone.read_text(encoding="utf-8"))
+    assert page.all("a")[0]["href"] == "../index.html#fig5"
+    assert [image["src"] for image in page.all("img")] == ["filling.png"]
 
 
 def test_words():
