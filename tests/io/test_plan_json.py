@@ -254,15 +254,27 @@ def test_what_python_wrote_is_read_again(geometry, tmp_path):
     assert (wall.blocks is not None) == (geometry == "exact")
 
 
-def test_no_file_of_another_wall_is_left_and_no_folder_made_that_cannot_be(tmp_path):
-    for geometry in ("exact", "raster"):
-        (tmp_path / "mine.txt").write_text("mine")
-        ds.write_plan_folder(planned(geometry), str(tmp_path))
-    known = {"mine.txt", "plan.json", "settings.toml", "wall.png"}
-    assert contents(tmp_path).keys() == known
-    for place in (tmp_path / "mine.txt", tmp_path / "mine.txt" / "in"):
+def test_files_of_an_earlier_plan_go_others_stay_and_no_folder_is_made_that_cannot_be(tmp_path):
+    folder, photo, others = tmp_path / "out", tmp_path / "photo.jpg", tmp_path / "others"
+    Image.fromarray(np.zeros((8, 8, 3), np.uint8)).save(photo)
+    folder.mkdir()
+    (folder / "mine.txt").write_text("mine")
+    exact = planned("exact")
+    source = {**exact.plan.source, **place_photo(photo, folder)[1]}
+    ds.write_plan_folder(replace(exact, plan=replace(exact.plan, source=source)), str(folder))
+    assert contents(folder).keys() > {"mine.txt", "blocks.json", "photo.jpg"}
+    ds.write_plan_folder(planned(), folder)
+    assert contents(folder).keys() == {"mine.txt", "plan.json", "settings.toml", "wall.png"}
+    for place in (folder / "mine.txt", folder / "mine.txt" / "in"):
         with pytest.raises(ds.DrystoneError, match=r"E206 .*mine.txt"):
             ds.write_plan_folder(planned(), place)
+    # No plan left these.
+    mine = dict.fromkeys(("wall.tif", "blocks.json", "photo.jpg"), b"mine")
+    others.mkdir()
+    for name, data in mine.items():
+        (others / name).write_bytes(data)
+    ds.write_plan_folder(planned(), others)
+    assert contents(others).items() > mine.items()
 
 
 def test_a_planner_becomes_a_plan_at_any_step():
@@ -310,27 +322,6 @@ def test_what_the_stones_were_read_from_is_never_replaced(tmp_path):
         assert before == contents(place)
         if source != masks:
             source.unlink()
-
-
-def test_files_that_no_plan_left_stay(tmp_path):
-    mine = dict.fromkeys(("wall.tif", "blocks.json", "photo.jpg"), b"mine")
-    for name, data in mine.items():
-        (tmp_path / name).write_bytes(data)
-    ds.write_plan_folder(planned(), tmp_path)
-    assert contents(tmp_path).items() > mine.items()
-
-
-def test_the_photograph_of_an_earlier_plan_goes(tmp_path):
-    folder, photo = tmp_path / "out", tmp_path / "photo.jpg"
-    Image.fromarray(np.zeros((8, 8, 3), np.uint8)).save(photo)
-    folder.mkdir()
-    _, record = place_photo(photo, folder)
-    result = planned()
-    plan = replace(result.plan, source={**result.plan.source, **record})
-    ds.write_plan_folder(replace(result, plan=plan), folder)
-    assert (folder / "photo.jpg").exists()
-    ds.write_plan_folder(result, folder)
-    assert not (folder / "photo.jpg").exists()
 
 
 def test_stones_of_a_program_can_be_checked_with_a_file_of_them(tmp_path, capsys):
