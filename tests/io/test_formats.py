@@ -222,16 +222,6 @@ def test_an_orientation_turns_a_mask_with_its_alpha_in_other_formats(kind, orien
         np.testing.assert_array_equal(picture.alpha, upright(alpha, orientation))
 
 
-def test_all_readers_of_a_wall_turn_it_alike(tmp_path):
-    labels = two_stones(7, 9, np.uint8)
-    path = written(tmp_path, pillow(labels, "TIFF", tiffinfo={274: 4}))
-    wall = read_wall(path)
-    np.testing.assert_array_equal(wall.labels, labels[::-1])
-    assert codes(wall) == ["W173"]
-    assert "mirrored top to bottom, as its orientation (4) says" in str(wall.notices[0])
-    assert read_stones(path).by_id(7).bottom_px == 5
-
-
 ONE = two_stones() == 300
 
 

@@ -296,16 +296,6 @@ def test_nothing_is_dropped_split_or_filled(tmp_path, top):
         write_wall_image(labels, tmp_path / "none")
 
 
-def test_other_background_becomes_zero(tmp_path):
-    labels = course(3, 300)
-    labels[labels == 0] = 999
-    path = write_wall_image(labels, tmp_path)
-    np.testing.assert_array_equal(read_wall_image(path, background=999), course(3, 300))
-    labels[5, 5] = 0
-    with pytest.raises(DrystoneError, match="E108"):
-        read_wall_image(write_wall_image(labels, tmp_path), background=999)
-
-
 def test_files_that_are_no_walls_are_refused_with_a_code(tmp_path):
     photo = np.random.default_rng(1).integers(0, 255, (60, 80, 3)).astype(np.uint8)
     Image.fromarray(photo).save(tmp_path / "photo.png")
@@ -322,3 +312,7 @@ def test_files_that_are_no_walls_are_refused_with_a_code(tmp_path):
             read_wall_image(tmp_path / name)
     with pytest.raises(DrystoneError, match="E110"):
         read_wall_image(tmp_path / "photo.png", max_image_mpx=0.001)
+    # Another background becomes zero, where nothing else is.
+    np.testing.assert_array_equal(read_wall_image(tmp_path / "white.png", background=255), framed)
+    with pytest.raises(DrystoneError, match="E108"):
+        read_wall_image(write_wall_image(course(255, 300), tmp_path), background=255)
