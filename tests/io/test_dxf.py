@@ -24,15 +24,6 @@ def saved(document, tmp_path, name="stones.dxf", **options):
     return tmp_path / name
 
 
-def draw_curves(space):
-    """A circle, an ellipse, a spline, and half a circle as a bulge."""
-    space.add_circle((1, 1), 0.4)
-    space.add_ellipse((3, 1), major_axis=(0.5, 0), ratio=0.4)
-    corners = [(5, 0.5, 0), (6, 0.5, 0), (6, 1.5, 0), (5, 1.5, 0)]
-    space.add_spline().set_closed(corners)  # periodic: its first knots are before its beginning
-    space.add_lwpolyline([(7, 0.5, 0), (8, 0.5, 1), (8, 1.5, 0), (7, 1.5, 0)], "xyb", close=True)
-
-
 FACING_ALONE = ["top", "front", "back", "right", "left", "slanting"]
 SURVEY = 1200 / 3937
 UNITS_M = [
@@ -91,29 +82,6 @@ def test_dxf_in_every_plane(tmp_path, place):
         told = [notice for notice in stones.notices if "is seen along" in notice.message]
         assert bool(told) == (place != "top")
         assert all("--up" in notice.cure for notice in told)
-
-
-@pytest.mark.parametrize("number", range(len(FACING_ALONE)))
-def test_dxf_of_all_kinds_in_a_plane(tmp_path, number):
-    document = ezdxf.new("R2010", units=6)
-    space = document.modelspace()
-    block = space if number % 2 else document.blocks.new("ALL")
-    draw_curves(block)
-    # No edge goes through centres of pixels.
-    block.add_polyline2d([(9, 0, 0), (10, 0, 0.5), (10, 0.93, 0)], format="xyb", close=True)
-    block.add_polyline3d([(11, 0, 0), (12, 0, 0), (11, 0.91, 0)], close=True)
-    if block is not space:
-        space.add_blockref("ALL", (0, 0))
-    settings = ReadSettings(px_per_m=100)
-    flat = read_stones(saved(document, tmp_path), settings=settings)
-    for entity in space:
-        entity.transform(matrix_to(FACING_ALONE[number]))
-    turned = read_stones(saved(document, tmp_path), settings=settings)
-    assert len(flat) == 6
-    for one, other in zip(flat, turned, strict=True):
-        assert other.area_px == pytest.approx(one.area_px, rel=5e-3)
-        places = [(*s.mask.shape, s.left_px, s.bottom_px) for s in (one, other)]
-        assert places[1] == pytest.approx(places[0], abs=1)
 
 
 def test_dxf_outlines_out_of_the_plane_are_named(tmp_path):
@@ -201,7 +169,12 @@ def test_dxf_versions_and_binary(tmp_path, version, kind):
 def test_dxf_curves_and_blocks(tmp_path):
     document = ezdxf.new("R2010", units=units.M)
     space = document.modelspace()
-    draw_curves(space)
+    # A circle, an ellipse, a spline, and half a circle as a bulge.
+    space.add_circle((1, 1), 0.4)
+    space.add_ellipse((3, 1), major_axis=(0.5, 0), ratio=0.4)
+    corners = [(5, 0.5, 0), (6, 0.5, 0), (6, 1.5, 0), (5, 1.5, 0)]
+    space.add_spline().set_closed(corners)  # periodic: its first knots are before its beginning
+    space.add_lwpolyline([(7, 0.5, 0), (8, 0.5, 1), (8, 1.5, 0), (7, 1.5, 0)], "xyb", close=True)
     space.add_spline().set_open_rational(
         [(12, 0, 0), (14, 0, 0), (13, 1.7320508, 0), (12.5, 0.8660254, 0), (12, 0, 0)], [1] * 5, 1
     )

@@ -42,19 +42,10 @@ def test_classes_that_are_not_stones(tmp_path, form):
         assert text in said(found)
     assert areas(read(tmp_path, form, shapes, label=(other.upper(),)))[0] == pytest.approx(100)
     assert len(read(tmp_path, form, shapes, label=("stone", other))) == 14
+    kinds = read(tmp_path, form, [*stones(), ("granite", box(2, 2, 12, 12))])
+    assert "stone (12), granite (1); all classes are read" in said(kinds)
     with pytest.raises(UsageError, match=rf"E118.*'tree'.*stone, {other}"):
         read(tmp_path, form, shapes, label=("tree",))
-
-
-@pytest.mark.parametrize("form", ["coco", "qupath"])
-@pytest.mark.parametrize("names", [("granite", "sandstone"), ("wall", "wall")])
-def test_kinds_of_stone_of_any_name_are_all_read_and_listed(tmp_path, form, names):
-    shapes = [(names[i % 2], ring) for i, ring in enumerate(stones())]
-    found = read(tmp_path, form, shapes)
-    assert len(found) == 12
-    for name in names:
-        assert f"{name} ({12 if names == ('wall', 'wall') else 6})" in said(found)
-    assert "all classes are read" in said(found)
 
 
 def test_names_of_classes():

@@ -16,7 +16,7 @@ from drystone.io.read_stones import read_stones
 from tests.io.pictures import areas, codes, two_stones
 from tests.io.test_formats import LIMIT
 
-NONE, GROUP3, GROUP4, LZW, DEFLATE, PACKBITS = 1, 3, 4, 5, 8, 32773
+NONE, LZW, DEFLATE, PACKBITS = 1, 5, 8, 32773
 REVERSED = bytes(int(f"{byte:08b}"[::-1], 2) for byte in range(256))
 KINDS = {(3, 16): "f2", (3, 32): "f4", (3, 64): "f8", (2, 8): "i1", (2, 16): "i2", (2, 32): "i4"}
 
@@ -52,12 +52,11 @@ def coded(table, compression, *, reverse):
     if compression == PACKBITS:
         data = b"".join(bytes([min(len(data) - i, 128) - 1]) + data[i : i + 128]
                         for i in range(0, len(data), 128))  # fmt: skip
-    if compression in (LZW, GROUP3, GROUP4):
+    if compression == LZW:
         image = Image.fromarray(np.frombuffer(data, np.uint8).reshape(len(table), -1))
-        if compression != LZW:
-            image = Image.fromarray(np.unpackbits(np.asarray(image), axis=1)[:, :60] > 0)
-        name = {LZW: "tiff_lzw", GROUP3: "group3", GROUP4: "group4"}[compression]
-        image.save(buffer := io.BytesIO(), "TIFF", compression=name, tiffinfo={278: len(table)})
+        image.save(
+            buffer := io.BytesIO(), "TIFF", compression="tiff_lzw", tiffinfo={278: len(table)}
+        )
         page = tifffile.TiffFile(io.BytesIO(buffer.getvalue())).pages[0]
         data = buffer.getvalue()[page.dataoffsets[0] :][: page.databytecounts[0]]
     if reverse:
@@ -130,14 +129,6 @@ def test_whole_numbers(bits, compression):
     read_back(
         labels(bits), bits, compression, order="<>", reverse=(False, True), photometric=(0, 1)
     )
-
-
-@pytest.mark.parametrize("compression", [GROUP3, GROUP4])
-def test_fax_codes(compression):
-    mask = two_stones(1, 1, np.int64)
-    for photometric, rows in product((0, 1), (None, 7)):
-        data = tiff(mask, 1, compression, photometric=photometric, rows=rows)
-        np.testing.assert_array_equal(decode(data, LIMIT).values, mask)
 
 
 @packings

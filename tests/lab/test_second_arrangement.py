@@ -1,4 +1,3 @@
-import math
 from types import SimpleNamespace
 
 import numpy as np
@@ -30,16 +29,6 @@ def test_is_its_slow_twin(labels):
         None if expected is None else pytest.approx(expected, abs=1e-9)
         for expected in naive.second_definition(labels)
     )
-
-
-def test_four_square_stones():
-    """From a start that is d px from the joint: d steps along the rim, the last one downwards."""
-    side, straight = 20, 21
-    starts = [1, 3, 5, 7, 9, 10, 12, 14, 16, 18]
-    to_joint = [max(0, 9 - start, start - 10) for start in starts]
-    aside = [distance + math.sqrt(2) - 2 if distance else 0.0 for distance in to_joint]
-    expected = 100 * sum(aside) / len(aside) / straight
-    assert both(stack(2, 2, side // 2, side // 2)) == pytest.approx((expected, expected))
 
 
 def test_a_path_cannot_pass_by_the_wall_nor_through_a_slit_at_its_end():
