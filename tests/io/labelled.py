@@ -1,10 +1,10 @@
 """Writers of the forms in which people keep outlines with classes: one picture, px, y down."""
 
-import json
-
 import ezdxf
 import numpy as np
 from PIL import Image
+
+from tests.io import pictures
 
 WIDTH, HEIGHT = 360, 260
 SIZE = {"original_width": WIDTH, "original_height": HEIGHT}
@@ -146,9 +146,8 @@ CLASSES = [form for form in FORMS if form != "yolo"]
 def written(folder, form, shapes):
     """Write labels and rings; beside them lies the picture, as YOLO says no size of it."""
     Image.new("L", (WIDTH, HEIGHT)).save(folder / "a.png")
-    path, content = folder / _FILES[FORMS[form]], FORMS[form](shapes)
-    if form == "dxf":
-        content.saveas(path)
-    else:
-        path.write_text(content if isinstance(content, str) else json.dumps(content))
-    return path
+    name, content = _FILES[FORMS[form]], FORMS[form](shapes)
+    if form != "dxf":
+        return pictures.written(folder, content, name)
+    content.saveas(folder / name)
+    return folder / name

@@ -1,6 +1,7 @@
 """Small pictures that the tests of the readers share."""
 
 import io
+import json
 import struct
 import zlib
 
@@ -44,6 +45,14 @@ def said(given):
 
 def areas(stones):
     return {stone.id: stone.area_px for stone in stones}
+
+
+def written(folder, content, name="stones.json"):
+    """Write bytes, a text, or what becomes JSON."""
+    if not isinstance(content, str | bytes):
+        content = json.dumps(content)
+    (folder / name).write_bytes(content if isinstance(content, bytes) else content.encode())
+    return folder / name
 
 
 def npy(values):

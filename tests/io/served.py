@@ -37,6 +37,14 @@ def lay_open(root):
         path.write_bytes(CONTENTS[file.name])
 
 
+def lay_down(folder, *names):
+    """Write files as they are kept here."""
+    for name in names:
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_bytes(CONTENTS[name])
+    return folder
+
+
 @contextmanager
 def serving(root):
     """Serve a folder on this machine; yield its address."""

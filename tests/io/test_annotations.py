@@ -1,7 +1,6 @@
 """labelme, COCO, SAM and GeoJSON: pixels, run lengths and numbers of the known stones."""
 
 import base64
-import json
 from dataclasses import replace
 
 import numpy as np
@@ -18,19 +17,13 @@ from drystone.io.read_stones import ReadSettings, read_stones
 from tests.io import labelled
 from tests.io.known_stones import HEIGHT, PIECES, STONES, WIDTH, close, compare, masks
 from tests.io.labelled import box
-from tests.io.pictures import codes, said
+from tests.io.pictures import codes, said, written
 from tests.io.test_formats import pillow
 
 EXACT = (1.0, 0.0, 0.0)
 """Every pixel the same: outlines and truth both take the centres of pixels."""
 
 LARGEST = ReadSettings(pieces="keep-largest")
-
-
-def written(tmp_path, content, name="stones.json"):
-    path = tmp_path / name
-    path.write_text(json.dumps(content))
-    return path
 
 
 def read(tmp_path, content, settings=PIECES, name="stones.json"):

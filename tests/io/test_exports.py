@@ -1,7 +1,6 @@
 """Further forms of labelling tools and nesting programs, and the codes of damaged files."""
 
 import base64
-import json
 import sys
 
 import numpy as np
@@ -12,14 +11,13 @@ from drystone.errors import InputError, UsageError
 from drystone.io.read_stones import ReadSettings, read_stones
 from tests.io.known_stones import masks
 from tests.io.labelled import HEIGHT, SIZE, WIDTH, box, stones, written
+from tests.io.pictures import written as file_of
 from tests.io.test_annotations import coco, geojson, labelme, runs
 from tests.io.test_formats import pillow
 
 
 def read(tmp_path, content, name="stones.json", **settings):
-    text = content if isinstance(content, str) else json.dumps(content)
-    (tmp_path / name).write_text(text)
-    return read_stones(tmp_path / name, settings=ReadSettings(**settings))
+    return read_stones(file_of(tmp_path, content, name), settings=ReadSettings(**settings))
 
 
 PER_CENT = {"x": 25.0, "y": 25.0}  # 90, 65

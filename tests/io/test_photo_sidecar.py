@@ -24,7 +24,7 @@ from drystone.io.photo_beside import (
 from drystone.io.read_stones import ReadSettings, read_stones
 from drystone.io.walls import read_wall
 from tests.io.labelled import labelme
-from tests.io.pictures import areas, said, two_stones
+from tests.io.pictures import areas, said, two_stones, written
 
 
 def test_it_comes_back_beside_its_label_image_only(tmp_path):
@@ -93,7 +93,7 @@ def planned(stones, folder):
     """Place the photograph and write down what the plan must say of it."""
     folder.mkdir(exist_ok=True)
     beside, record = place_photo(None if stones is None else photo_of(stones), folder)
-    (folder / "plan.json").write_text(json.dumps({"source": dict(record)}), encoding="utf-8")
+    written(folder, {"source": dict(record)}, "plan.json")
     return beside
 
 
@@ -183,9 +183,7 @@ WALL = {
 def page(tmp_path, shapes=WALL, **own):
     content = labelme((str(i), list(one.exterior.coords)[:-1]) for i, one in shapes.items())
     content |= {"imagePath": "photo.jpg", "imageWidth": WIDE, "imageHeight": HIGH, "drystone": own}
-    path = tmp_path / "outlines.json"
-    path.write_text(json.dumps(content))
-    return path
+    return written(tmp_path, content, "outlines.json")
 
 
 def test_scale_frame_and_numbers_survive_and_marked_stones_are_left_out_and_said(tmp_path):

@@ -22,7 +22,7 @@ from drystone.io.published import (
 )
 from drystone.io.read_stones import ReadSettings, read_stones
 from tests.io.pictures import codes
-from tests.io.served import CONTENTS, lay_open, nobody, serving, toy_set
+from tests.io.served import CONTENTS, lay_down, lay_open, nobody, serving, toy_set
 
 
 @pytest.fixture(autouse=True)
@@ -43,13 +43,6 @@ def served(tmp_path):
     """The folder of a server, with the files of the small set."""
     lay_open(tmp_path / "served")
     return tmp_path / "served"
-
-
-def lay_down(folder, *names):
-    for name in names:
-        (folder / name).parent.mkdir(parents=True, exist_ok=True)
-        (folder / name).write_bytes(CONTENTS[name])
-    return folder
 
 
 def test_what_is_missing_is_downloaded_once_and_with_its_licence(served, tmp_path):

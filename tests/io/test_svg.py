@@ -14,6 +14,7 @@ from drystone.errors import InputError
 from drystone.io.outlines_in.svg import read_svg, subpaths, transform
 from drystone.io.read_stones import ReadSettings, read_stones
 from tests.io.known_stones import HEIGHT, METRIC, PX_PER_M, STONES, WIDTH, close, compare
+from tests.io.pictures import written
 
 MM = 1000.0 / PX_PER_M
 PAGE = 'width="200mm" height="100mm" viewBox="0 0 200 100"'
@@ -269,8 +270,7 @@ def paths():
 
 
 def kept(text, tmp_path, settings=METRIC):
-    (tmp_path / "stones.svg").write_text(text)
-    return read_stones(tmp_path / "stones.svg", settings=settings)
+    return read_stones(written(tmp_path, text, "stones.svg"), settings=settings)
 
 
 def test_svg_to_scale_or_as_an_image(tmp_path):

@@ -4,7 +4,7 @@ import pytest
 
 from drystone.io.published import LICENCE, PAPER, SETS
 from drystone_lab.commands import fetch
-from tests.io.served import COMMIT, CONTENTS, lay_open, nobody, serving, toy_set
+from tests.io.served import COMMIT, CONTENTS, lay_down, lay_open, nobody, serving, toy_set
 
 
 @pytest.fixture
@@ -37,9 +37,7 @@ def test_a_set_arrives_with_licence_and_source(run, tmp_path, monkeypatch):
 
 @pytest.mark.usefixtures("_toys")
 def test_a_local_copy_wins(run, tmp_path, monkeypatch):
-    (tmp_path / "toy").mkdir()
-    for name, contents in CONTENTS.items():
-        (tmp_path / name).write_bytes(contents)
+    lay_down(tmp_path, *CONTENTS)
     monkeypatch.setenv("DRYSTONE_DATA", str(tmp_path))
     monkeypatch.setattr(fetch, "RAW", nobody())
     ran = run("fetch", "toy", "toy", "--json")
