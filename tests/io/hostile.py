@@ -18,30 +18,22 @@ from tests.io import test_annotations
 from tests.io.pictures import npy, png_of, two_stones
 from tests.io.test_dxf import text_of
 from tests.io.test_formats import pillow
+from tests.io.test_tiff_kinds import tiff
 
 EPS = b"%!PS-Adobe-3.0 EPSF-3.0\n%%BoundingBox: 0 0 60 36\n%%EndComments\n(x) print\n%%EOF\n"
 STONE, USE = '<rect width="9" height="9"/>', "<use href='#p'/>"
 
 
-def tiff_of(tags=None, *, following=0, big=False):
-    """A TIFF of 6 x 4 px, with some tags of other values; all values are longs."""
-    pixels = bytes(range(24))
-    start, count, entry = (16, 8, 20) if big else (8, 2, 12)
-    usual = {256: 6, 257: 4, 258: 8, 259: 1, 262: 1, 273: 0, 277: 1, 278: 4, 279: 24}
-    table = dict(sorted((usual | (tags or {})).items()))
-    data_at = start + count + entry * len(table) + (8 if big else 4)
-    table[273] = (tags or {}).get(273, data_at)
-    kind = "<HHQQ" if big else "<HHII"
-    entries = b"".join(struct.pack(kind, tag, 4, 1, value) for tag, value in table.items())
-    head = b"II+\0" + struct.pack("<HHQ", 8, 0, 16) if big else b"II*\0" + struct.pack("<I", 8)
-    number = struct.pack("<Q" if big else "<H", len(table))
-    return head + number + entries + struct.pack("<Q" if big else "<I", following) + pixels
+def tiff_of(tags=None, **more):
+    """A TIFF of 6 x 4 px, with some tags of other values."""
+    tags = {tag: [value] for tag, value in (tags or {}).items()}
+    return tiff(np.arange(24).reshape(4, 6), tags=tags, **more)
 
 
 def many_entries():
     """A BigTIFF with more entries than offsets can count."""
     data = tiff_of(big=True)
-    return data[:16] + struct.pack("<Q", 2**63) + data[24:]
+    return data[:40] + struct.pack("<Q", 2**63) + data[48:]
 
 
 def signalling():
@@ -178,8 +170,8 @@ FILES = {
     # a program that is started
     "eps.json": (lambda: labelme(EPS), "E114 .*is not a picture"),
     # no end
-    "circle.tif": (lambda: tiff_of(following=8), "E106 .*in a circle"),
-    "circle_big.tif": (lambda: tiff_of(following=16, big=True), "E106 .*in a circle"),
+    "circle.tif": (lambda: tiff_of(following=32), "E106 .*in a circle"),
+    "circle_big.tif": (lambda: tiff_of(following=40, big=True), "E106 .*in a circle"),
     "selectors.svg": (
         lambda: svg(
             f"<style>.z {'g ' * 12}rect{{opacity:0}}</style>{'<g>' * 50}{STONE}{'</g>' * 50}"

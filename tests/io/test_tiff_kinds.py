@@ -65,8 +65,13 @@ def coded(table, compression, *, reverse):
 
 
 def tiff(values, bits=8, compression=NONE, *, order="<", sample=1, predictor=1, tile=None,
-         rows=None, planar=False, reverse=False, photometric=1, sparse=(), tags=()):  # fmt: skip
-    """The bytes of a TIFF; strips whose number is in `sparse` are not in it."""
+         rows=None, planar=False, reverse=False, photometric=1, sparse=(), tags=(),
+         big=False, following=0):  # fmt: skip
+    """The bytes of a TIFF, or of a BigTIFF; strips whose number is in `sparse` are not in it.
+
+    `following` is where the directory of the next page is said to be.
+    """
+    start, word, room, entry = (16, "Q", 8, 20) if big else (8, "I", 4, 12)
     values = values.reshape(*values.shape[:2], -1)
     height, width, channels = values.shape
     down, across = (tile, tile) if tile else (rows or height, width)
@@ -80,7 +85,7 @@ def tiff(values, bits=8, compression=NONE, *, order="<", sample=1, predictor=1, 
         missing = len(pieces) in sparse
         pieces.append(b"" if missing else coded(table, compression, reverse=reverse))
     sizes = list(map(len, pieces))
-    ends = 8 + np.cumsum(sizes)
+    ends = start + np.cumsum(sizes)
     offsets = [int(end - size) if size else 0 for end, size in zip(ends, sizes, strict=True)]
     where = {278: [down], 273: offsets, 279: sizes}
     if tile:
@@ -93,16 +98,20 @@ def tiff(values, bits=8, compression=NONE, *, order="<", sample=1, predictor=1, 
     }  # fmt: skip
     body = b"".join(pieces)
     body += b"\0" * (len(body) % 2)
-    extra, entries, place = b"", b"", 8 + len(body) + 2 + 12 * len(found) + 4
+    first = start + len(body)
+    number = struct.pack(order + ("Q" if big else "H"), len(found))
+    extra, entries, place = b"", b"", first + len(number) + entry * len(found) + room
     for tag, numbers in sorted(found.items()):
         kind, count, data = 2, len(numbers), numbers
         if not isinstance(numbers, bytes):
             kind, data = 4, struct.pack(f"{order}{count}I", *numbers)
-        if len(data) > 4:
-            data, extra = struct.pack(f"{order}I", place + len(extra)), extra + data
-        entries += struct.pack(f"{order}HHI", tag, kind, count) + data.ljust(4, b"\0")
-    head = struct.pack(f"{order}2sHI", b"II" if order == "<" else b"MM", 42, 8 + len(body))
-    return head + body + struct.pack(f"{order}H", len(found)) + entries + b"\0" * 4 + extra
+        if len(data) > room:
+            data, extra = struct.pack(order + word, place + len(extra)), extra + data
+        entries += struct.pack(f"{order}HH{word}", tag, kind, count) + data.ljust(room, b"\0")
+    marks = [43, 8, 0] if big else [42]
+    head = struct.pack(f"{order}2s{len(marks)}H{word}", b"II" if order == "<" else b"MM",
+                       *marks, first)  # fmt: skip
+    return head + body + number + entries + struct.pack(order + word, following) + extra
 
 
 def labels(bits):
@@ -110,7 +119,7 @@ def labels(bits):
     return two_stones(1, 2 ** min(bits, 16) - 1, np.int64)[:, :59]
 
 
-LAYOUTS = [{}, {"rows": 7}, {"tile": 16}]
+LAYOUTS = [{}, {"rows": 7, "big": True}, {"tile": 16}]
 packings = pytest.mark.parametrize("compression", [NONE, LZW, DEFLATE, PACKBITS])
 
 

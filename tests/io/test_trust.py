@@ -18,7 +18,7 @@ from drystone.io.json_text import DEEPEST, json_of
 from drystone.io.photo_file import read_photo
 from drystone.io.read_settings import ReadSettings
 from drystone.io.read_stones import read_stones
-from tests.io.hostile import FILES, SETTINGS, tiff_of
+from tests.io.hostile import FILES, SETTINGS
 from tests.io.pictures import codes, save_mask, two_stones
 from tests.io.test_formats import LIMIT, pillow
 
@@ -47,12 +47,6 @@ def test_files_that_are_read_or_refused(name, tmp_path, ghostscript, capfd):
     assert len(said) < 700
     assert not ghostscript.exists()
     assert capfd.readouterr() == ("", "")
-
-
-def test_the_tiff_of_these_tests_can_be_read():
-    for big in (False, True):
-        values = decode(tiff_of(big=big), LIMIT).values
-        assert values.tolist() == np.arange(24).reshape(4, 6).tolist()
 
 
 def test_a_pipe_is_not_waited_for_and_what_has_no_end_or_is_too_large_is_not_read(tmp_path):
