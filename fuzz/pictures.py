@@ -60,19 +60,19 @@ def pngs() -> Sequence[bytes]:
     turned = Image.Exif()
     turned[274] = 6
     return [
-        *(_saved(values, "PNG") for values in (grey, large, colours(label_image("u4", times=300)))),
-        *(_saved(colours(label_image("u4"), 4)[..., :n], "PNG") for n in (2, 4)),
-        *(_png(grey % 2**depth, depth, kind) for depth, kind in bits),
-        _png(grey, 8, 0, interlaced=True),
-        _png(np.repeat(grey, 6, axis=1), 16, 2),  # refused: ids would merge
-        _saved(clear, "PNG", transparency=0),
-        _saved(np.dstack([grey, np.where(grey == 9, 0, 255).astype("u1")]), "PNG", exif=turned),
-        _saved(np.dstack([grey * 0] * 3 + [grey * 20]), "PNG"),  # the mask is the alpha
-        _saved(frames[0], "PNG", save_all=True, append_images=frames[1:]),
+        *(pillow(values, "PNG") for values in (grey, large, colours(label_image("u4", times=300)))),
+        *(pillow(colours(label_image("u4"), 4)[..., :n], "PNG") for n in (2, 4)),
+        *(png(grey % 2**depth, depth, kind) for depth, kind in bits),
+        png(grey, 8, 0, interlaced=True),
+        png(np.repeat(grey, 6, axis=1), 16, 2),  # refused: ids would merge
+        pillow(clear, "PNG", transparency=0),
+        pillow(np.dstack([grey, np.where(grey == 9, 0, 255).astype("u1")]), "PNG", exif=turned),
+        pillow(np.dstack([grey * 0] * 3 + [grey * 20]), "PNG"),  # the mask is the alpha
+        pillow(frames[0], "PNG", save_all=True, append_images=frames[1:]),
     ]
 
 
-def _png(values: Array, depth: int, kind: int, *, interlaced: bool = False) -> bytes:
+def png(values: Array, depth: int, kind: int, *, interlaced: bool = False) -> bytes:
     """Return a PNG with rows that no filter changed."""
     samples = 6 if depth == 16 else 1
     passes = _PASSES if interlaced else ((0, 0, 1, 1),)
@@ -94,7 +94,8 @@ def _png(values: Array, depth: int, kind: int, *, interlaced: bool = False) -> b
     )
 
 
-def _saved(values: Array | Image.Image, kind: str, **options: Any) -> bytes:
+def pillow(values: Array | Image.Image, kind: str, **options: Any) -> bytes:
+    """Return a picture as Pillow writes it."""
     image = values if isinstance(values, Image.Image) else Image.fromarray(values)
     buffer = io.BytesIO()
     image.save(buffer, kind, **options)
@@ -108,24 +109,24 @@ def tiffs() -> Sequence[bytes]:
     packed = ("tiff_lzw", "packbits", "tiff_adobe_deflate", "tiff_deflate", "jpeg")
     rgb = colours(wide)
     return [
-        *(_tiff(label_image(kind)) for kind in ("u1", "u2", "u4", "i2", "i4", "f4", "f8")),
-        _tiff(grey > 0),
-        *(_tiff(wide, **options) for options in (
+        *(tiff(label_image(kind)) for kind in ("u1", "u2", "u4", "i2", "i4", "f4", "f8")),
+        tiff(grey > 0),
+        *(tiff(wide, **options) for options in (
             {"byteorder": ">"}, {"bigtiff": True}, {"bigtiff": True, "byteorder": ">"},
             {"compression": "zlib"}, {"compression": "zlib", "predictor": 2}, {"tile": (16, 16)},
             {"rowsperstrip": 5}, {"software": "a", "description": "b", "resolution": (9, 9)},
         )),
-        *(_saved(grey, "TIFF", compression=kind) for kind in packed),
-        *(_saved(mask, "TIFF", compression=kind) for kind in ("group3", "group4", "tiff_ccitt")),
-        _saved(label_image("i4"), "TIFF", compression="tiff_lzw"),
-        _saved(Image.fromarray(grey).convert("P"), "TIFF"),
-        _saved(grey, "TIFF", tiffinfo={262: 0, 274: 6}),
-        _tiff(rgb, photometric="rgb"), _tiff(rgb, photometric="rgb", compression="zlib"),
-        _tiff(np.moveaxis(rgb, -1, 0), photometric="rgb", planarconfig="separate"),
-        _tiff(colours(wide, 4), photometric="rgb", extrasamples=["unassalpha"]),
-        _tiff(np.stack([grey, grey])),
+        *(pillow(grey, "TIFF", compression=kind) for kind in packed),
+        *(pillow(mask, "TIFF", compression=kind) for kind in ("group3", "group4", "tiff_ccitt")),
+        pillow(label_image("i4"), "TIFF", compression="tiff_lzw"),
+        pillow(Image.fromarray(grey).convert("P"), "TIFF"),
+        pillow(grey, "TIFF", tiffinfo={262: 0, 274: 6}),
+        tiff(rgb, photometric="rgb"), tiff(rgb, photometric="rgb", compression="zlib"),
+        tiff(np.moveaxis(rgb, -1, 0), photometric="rgb", planarconfig="separate"),
+        tiff(colours(wide, 4), photometric="rgb", extrasamples=["unassalpha"]),
+        tiff(np.stack([grey, grey])),
         *_tiffs_of_tags(),
-        _tiff(grey[None], imagej=True), _tiff(grey, ome=True, metadata={"axes": "YX", "UUID": "a"}),
+        tiff(grey[None], imagej=True), tiff(grey, ome=True, metadata={"axes": "YX", "UUID": "a"}),
     ]  # fmt: skip
 
 
@@ -133,11 +134,11 @@ def _tiffs_of_tags() -> Sequence[bytes]:
     """Return TIFF that no writer here makes: 4 bits, a sparse strip, numbers with predictor 3."""
     grey, half = label_image(), {256: WIDTH, 258: 4}
     packed = grey[:, ::2] % 16 << 4 | grey[:, 1::2] % 16
-    strips = _tiff(grey, tile=(16, 16), compression="zlib")
+    strips = tiff(grey, tile=(16, 16), compression="zlib")
     nodata = (42113, "s", 0, "-1", True)
-    point = _tiff(label_image("i4"), compression="zlib", predictor=2, extratags=[nodata])
-    lzw = _saved(packed, "TIFF", compression="tiff_lzw")
-    return [_patched(_tiff(packed), half), _patched(lzw, half), _patched(point, {317: 3, 339: 3}),
+    point = tiff(label_image("i4"), compression="zlib", predictor=2, extratags=[nodata])
+    lzw = pillow(packed, "TIFF", compression="tiff_lzw")
+    return [_patched(tiff(packed), half), _patched(lzw, half), _patched(point, {317: 3, 339: 3}),
             _patched(strips, {}, sparse=True)]  # fmt: skip
 
 
@@ -155,7 +156,8 @@ def _patched(data: bytes, tags: dict[int, int], *, sparse: bool = False) -> byte
     return bytes(found)
 
 
-def _tiff(values: Array, **options: Any) -> bytes:
+def tiff(values: Array, **options: Any) -> bytes:
+    """Return a TIFF as tifffile writes it."""
     buffer = io.BytesIO()
     tifffile.imwrite(buffer, values, **options)
     return buffer.getvalue()
@@ -166,9 +168,9 @@ def gifs() -> Sequence[bytes]:
     grey = label_image()
     frames = [Image.fromarray(grey), Image.fromarray(grey[::-1].copy())]
     return [
-        _saved(grey, "GIF", optimize=False),
-        _saved(grey, "GIF", optimize=False, interlace=0, transparency=0),
-        _saved(frames[0], "GIF", save_all=True, append_images=frames[1:]),
+        pillow(grey, "GIF", optimize=False),
+        pillow(grey, "GIF", optimize=False, interlace=0, transparency=0),
+        pillow(frames[0], "GIF", save_all=True, append_images=frames[1:]),
     ]
 
 
@@ -176,16 +178,16 @@ def bmps() -> Sequence[bytes]:
     """Return BMP of 1, 8, 24 and 32 bits."""
     grey = label_image()
     of_colours = [colours(label_image("u4", times=300), n) for n in (3, 4)]
-    return [_saved(values, "BMP") for values in (grey, grey > 0, *of_colours)]
+    return [pillow(values, "BMP") for values in (grey, grey > 0, *of_colours)]
 
 
 def jpegs() -> Sequence[bytes]:
     """Return JPEG of masks, with more parts than they need."""
     mask, exif = Image.fromarray((label_image() > 0).astype(np.uint8) * 255), _turned()
     return [
-        _saved(mask, "JPEG", quality=95), _saved(mask, "JPEG", progressive=True, exif=exif),
-        _saved(mask.convert("RGB"), "JPEG", comment=b"a", dpi=(9, 9)),
-        _saved(mask.convert("CMYK"), "JPEG"),
+        pillow(mask, "JPEG", quality=95), pillow(mask, "JPEG", progressive=True, exif=exif),
+        pillow(mask.convert("RGB"), "JPEG", comment=b"a", dpi=(9, 9)),
+        pillow(mask.convert("CMYK"), "JPEG"),
     ]  # fmt: skip
 
 
@@ -205,10 +207,11 @@ def npys() -> Sequence[bytes]:
     arrays += [np.where(grey == 0, ground, label_image("f4")) for ground in (-1, np.nan)]
     near = np.pad(grey, 1)[2:, 2:] | np.pad(grey, 1)[:-2, :-2] | grey
     arrays += [np.where((grey == 0) & (near > 0), 255, grey)]  # a void around all stones
-    return [_npy(array) for array in arrays] + [_npy(grey, version=(2, 0))]
+    return [npy(array) for array in arrays] + [npy(grey, version=(2, 0))]
 
 
-def _npy(array: Array, version: tuple[int, int] | None = None) -> bytes:
+def npy(array: Array, version: tuple[int, int] | None = None) -> bytes:
+    """Return an array as NumPy writes it."""
     buffer = io.BytesIO()
     np.lib.format.write_array(buffer, array, version)
     return buffer.getvalue()
@@ -232,11 +235,11 @@ def npzs() -> Sequence[bytes]:
 def folders() -> Sequence[Case]:
     """Return folders of a mask a stone."""
     grey = label_image()
-    masks = {f"s{stone}.png": _saved(grey == stone, "PNG") for stone in STONES}
+    masks = {f"s{stone}.png": pillow(grey == stone, "PNG") for stone in STONES}
     return [
         masks,
         {**{name[:-3] + "bmp": data for name, data in masks.items()}, "read.txt": b"me"},
-        {"1.npy": _npy((grey == 7).astype(np.uint8) * 255), "2.tif": _tiff(grey == 9)},
+        {"1.npy": npy((grey == 7).astype(np.uint8) * 255), "2.tif": tiff(grey == 9)},
     ]
 
 
@@ -250,13 +253,13 @@ def photos() -> Sequence[bytes]:
     picture = Image.fromarray(rgb)
     exif = _turned()
     return [
-        _saved(rgb, "JPEG", quality=90), _saved(rgb, "JPEG", exif=exif, progressive=True),
-        _saved(picture.convert("CMYK"), "JPEG"), _saved(grey, "JPEG"), _saved(rgb, "PNG"),
-        _saved(rgb, "PNG", exif=exif), _saved(picture.convert("P"), "PNG"),
-        _saved(light.astype(np.uint16) * 257, "PNG"), _saved(picture.convert("RGBA"), "PNG"),
-        _saved(rgb, "TIFF", compression="tiff_lzw"), _saved(rgb, "TIFF", tiffinfo={274: 6}),
-        _tiff(rgb.astype(np.uint16) * 257, photometric="rgb"), _tiff(grey, compression="zlib"),
-        _saved(picture.convert("CMYK"), "TIFF"), _saved(rgb, "TIFF", compression="jpeg"),
+        pillow(rgb, "JPEG", quality=90), pillow(rgb, "JPEG", exif=exif, progressive=True),
+        pillow(picture.convert("CMYK"), "JPEG"), pillow(grey, "JPEG"), pillow(rgb, "PNG"),
+        pillow(rgb, "PNG", exif=exif), pillow(picture.convert("P"), "PNG"),
+        pillow(light.astype(np.uint16) * 257, "PNG"), pillow(picture.convert("RGBA"), "PNG"),
+        pillow(rgb, "TIFF", compression="tiff_lzw"), pillow(rgb, "TIFF", tiffinfo={274: 6}),
+        tiff(rgb.astype(np.uint16) * 257, photometric="rgb"), tiff(grey, compression="zlib"),
+        pillow(picture.convert("CMYK"), "TIFF"), pillow(rgb, "TIFF", compression="jpeg"),
     ]  # fmt: skip
 
 

@@ -12,12 +12,12 @@ import zlib
 
 import ezdxf
 import numpy as np
+from fuzz.pictures import npy, pillow
 
 from drystone.io.read_settings import ReadSettings
 from tests.io import test_annotations
-from tests.io.pictures import npy, png_of, two_stones
+from tests.io.pictures import png_of, two_stones
 from tests.io.test_dxf import text_of
-from tests.io.test_formats import pillow
 from tests.io.test_tiff_kinds import tiff
 
 EPS = b"%!PS-Adobe-3.0 EPSF-3.0\n%%BoundingBox: 0 0 60 36\n%%EndComments\n(x) print\n%%EOF\n"

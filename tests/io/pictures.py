@@ -1,6 +1,5 @@
 """Small pictures that the tests of the readers share."""
 
-import io
 import json
 import struct
 import zlib
@@ -53,11 +52,6 @@ def written(folder, content, name="stones.json"):
         content = json.dumps(content)
     (folder / name).write_bytes(content if isinstance(content, bytes) else content.encode())
     return folder / name
-
-
-def npy(values):
-    np.save(buffer := io.BytesIO(), values)
-    return buffer.getvalue()
 
 
 def save_mask(path, mask):

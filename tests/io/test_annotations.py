@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from fuzz.pictures import pillow
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
@@ -18,7 +19,6 @@ from tests.io import labelled
 from tests.io.known_stones import HEIGHT, PIECES, STONES, WIDTH, close, compare, masks
 from tests.io.labelled import box
 from tests.io.pictures import codes, said, written
-from tests.io.test_formats import pillow
 
 EXACT = (1.0, 0.0, 0.0)
 """Every pixel the same: outlines and truth both take the centres of pixels."""

@@ -5,6 +5,7 @@ import sys
 
 import numpy as np
 import pytest
+from fuzz.pictures import pillow
 from PIL import Image
 
 from drystone.errors import InputError, UsageError
@@ -13,7 +14,6 @@ from tests.io.known_stones import masks
 from tests.io.labelled import HEIGHT, SIZE, WIDTH, box, stones, written
 from tests.io.pictures import written as file_of
 from tests.io.test_annotations import coco, geojson, labelme, runs
-from tests.io.test_formats import pillow
 
 
 def read(tmp_path, content, name="stones.json", **settings):

@@ -7,7 +7,7 @@ from itertools import product
 
 import numpy as np
 import pytest
-import tifffile
+from fuzz.pictures import colours, npy, pillow, png, tiff
 from PIL import Image, ImageOps
 from scipy import ndimage
 
@@ -16,29 +16,9 @@ from drystone.io.images import decode
 from drystone.io.read_stones import ReadSettings, read_stones
 from drystone.io.wall_image import read_wall_image
 from drystone.io.walls import read_wall
-from tests.io.pictures import areas, codes, npy, png_of, two_stones
+from tests.io.pictures import areas, codes, png_of, two_stones
 
 LIMIT = 10**6
-
-
-def png(values, depth, colour_type):
-    """A PNG of values below 2 ** depth."""
-    height, width = values.shape[:2]
-    bits = np.unpackbits(values.astype(np.uint8)[..., None], axis=2)[..., 8 - depth :]
-    lines = np.packbits(bits.reshape(height, -1), axis=1)
-    palette = bytes(range(3 * 2**depth)) if colour_type == 3 else b""
-    body = b"".join(b"\0" + line.tobytes() for line in lines)
-    return png_of(width, height, depth, colour_type, body, palette)
-
-
-def pillow(values, kind, **options):
-    Image.fromarray(values).save(buffer := io.BytesIO(), kind, **options)
-    return buffer.getvalue()
-
-
-def tiff(values, **options):
-    tifffile.imwrite(buffer := io.BytesIO(), values, **options)
-    return buffer.getvalue()
 
 
 def palette(values, kind):
@@ -70,10 +50,6 @@ def test_png_of_few_bits_keeps_its_own_values(depth, top, colour_type):
     np.testing.assert_array_equal(values, labels)
 
 
-def rgb(labels):
-    return np.stack([labels >> shift & 255 for shift in (0, 8, 16)], axis=-1).astype(np.uint8)
-
-
 def with_last(values, last):
     return np.concatenate([np.atleast_3d(values), np.atleast_3d(last)], axis=-1)
 
@@ -85,7 +61,7 @@ def written(folder, data):
 
 @pytest.mark.parametrize("alpha", [None, 255, 0])
 def test_colours_are_ids_and_alpha_is_ignored(tmp_path, alpha):
-    values = rgb(two_stones())
+    values = colours(two_stones())
     if alpha is not None:
         values = with_last(values, np.full((40, 60), alpha, np.uint8))
     stones = read_stones(written(tmp_path, pillow(values, "PNG")))
@@ -100,7 +76,7 @@ def test_colours_are_ids_and_alpha_is_ignored(tmp_path, alpha):
     [
         two_stones(), two_stones().astype(np.int64), two_stones().astype(np.float64),
         np.asfortranarray(two_stones()), two_stones()[None], two_stones()[:, :, None],
-        two_stones().astype(">u4"), two_stones().astype(np.uint64), rgb(two_stones()),
+        two_stones().astype(">u4"), two_stones().astype(np.uint64), colours(two_stones()),
     ],
 )  # fmt: skip
 def test_arrays_and_npy(tmp_path, array):
@@ -230,7 +206,7 @@ def test_a_last_channel_that_may_be_a_stone_is_refused(tmp_path):
         MASKS,
         MASKS.astype(np.uint8) * np.uint8(255),
         with_last(two_stones(7, 9, np.uint8), ONE * np.uint8(255)),
-        with_last(rgb(two_stones()), ONE * np.uint8(255)),
+        with_last(colours(two_stones()), ONE * np.uint8(255)),
         np.stack([ONE, ~ONE, ONE, ~ONE], -1),
     ):
         np.save(tmp_path / "two.npy", values)
@@ -240,7 +216,7 @@ def test_a_last_channel_that_may_be_a_stone_is_refused(tmp_path):
                 read_stones(source)
 
 
-@pytest.mark.parametrize("labels", [two_stones(), rgb(two_stones())])
+@pytest.mark.parametrize("labels", [two_stones(), colours(two_stones())])
 def test_an_array_with_alpha_is_read(labels):
     seen = two_stones() > 0
     for alpha in (FULL, FULL * 0, seen * np.uint8(255), seen):
@@ -333,7 +309,7 @@ def test_an_extra_channel_of_a_tiff_is_alpha_only_where_it_says_so(tmp_path):
     ("kind", "mode"), [*product(["TIFF", "lzw"], ["CMYK", "LAB", "YCbCr"]), ("JPEG", "CMYK")]
 )
 def test_colours_that_hold_no_ids(tmp_path, kind, mode):
-    image = Image.fromarray(rgb(two_stones()))
+    image = Image.fromarray(colours(two_stones()))
     image = Image.new("LAB", image.size, (3, 3, 3)) if mode == "LAB" else image.convert(mode)
     options = {"compression": "tiff_lzw"} if kind == "lzw" else {}
     image.save(tmp_path / "a.any", "TIFF" if kind == "lzw" else kind, **options)

@@ -4,12 +4,12 @@ import cv2
 import numpy as np
 import pytest
 import tifffile
+from fuzz.pictures import pillow, tiff
 from PIL import Image
 
 from drystone.errors import InputError
 from drystone.io.photo_file import MAX_SIDE_PX, read_photo
 from tests.io.pictures import codes
-from tests.io.test_formats import pillow, tiff
 
 PICTURE = np.random.default_rng(3).integers(0, 256, (6, 9, 3), dtype=np.uint8)
 LARGE = np.tile(PICTURE, (40, 40, 1))

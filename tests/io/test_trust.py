@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from fuzz.pictures import pillow
 from PIL import Image
 
 import drystone
@@ -20,7 +21,7 @@ from drystone.io.read_settings import ReadSettings
 from drystone.io.read_stones import read_stones
 from tests.io.hostile import FILES, SETTINGS
 from tests.io.pictures import codes, save_mask, two_stones
-from tests.io.test_formats import LIMIT, pillow
+from tests.io.test_formats import LIMIT
 
 
 @pytest.fixture
