@@ -1,57 +1,28 @@
-"""A small wall, its plan and a mechanism, made by hand for the tests of pictures and reports."""
+"""The plan of a small wall made by hand, and a mechanism of it, for pictures and reports."""
 
 from dataclasses import replace
 
 import numpy as np
 
-from drystone.model.placement import Placement, Wedge
 from drystone.model.plan import PlanMetrics
-from drystone.model.pose import PosedStone
-from drystone.model.site import Site
-from drystone.model.wall import Wall
 from drystone.statics.result import LateralResistance, LimitResult, LimitStatus, Mechanism
-from tests.verify.examples import SETTINGS, in_a_row, plan_of
+from tests.verify.examples import L_STONE, SLAB, WEDGE, example
 
-CLUSTERS = {3: 1, 5: 2, 8: 1, 12: 3, 300: 2}
-UNUSED = 40
-WEDGE = 301
-
-
-def stone_set():
-    masks = {
-        3: np.ones((8, 14), bool),
-        5: np.ones((6, 16), bool),
-        8: np.ones((8, 10), bool),
-        12: np.ones((8, 12), bool),
-        300: np.ones((4, 20), bool),
-        UNUSED: np.ones((2, 2), bool),
-    }
-    masks[12][:4, 6:] = False  # an L
-    return in_a_row(masks, "<b>PR.png", "0" * 64, 14)
+CLUSTERS = {3: 1, 5: 2, SLAB: 1, L_STONE: 3, 300: 2}
+UNUSED = 9
 
 
 def wall(px_per_m=None):
-    """Three stones on the ground, an L and a slab on top, a wedge under the slab."""
-    stones = stone_set()
-    site = Site(44, 20, scale=1.0, px_per_m=px_per_m)
-    built = Wall.empty(site)
-    for stone_id, row, col in ((3, 12, 0), (5, 14, 14), (8, 12, 30), (12, 4, 0)):
-        built = built.add(Placement(_posed(stones.by_id(stone_id)), row, col))
-    wedge = Wedge(WEDGE, 300, np.ones((2, 3), bool), 12, 20)
-    slab = Placement(_posed(stones.by_id(300)), 8, 20, side="right", rotation_moves=1)
-    return built.add(slab, (wedge,))
-
-
-def _posed(stone):
-    return PosedStone(stone, 0.0, 1.0, stone.mask.copy(), stone.local_centroid)
+    """A slab on two pillars, with a wedge on the lower one, an L, and a slim stone at the end."""
+    return example(1.0, px_per_m).wall
 
 
 def mechanism():
     """The L slides to the left, the slab turns counter-clockwise."""
     velocity = np.zeros((6, 3))
     velocity[3] = (-1.0, 0.0, 0.0)
-    velocity[4] = (-0.3, 0.4, 0.05)
-    return Mechanism((3, 5, 8, 12, 300, WEDGE), velocity)
+    velocity[2] = (-0.3, 0.4, 0.05)
+    return Mechanism((3, 5, SLAB, L_STONE, 300, WEDGE), velocity)
 
 
 def resistance():
@@ -60,13 +31,15 @@ def resistance():
     return LateralResistance(left, right, 0.58)
 
 
-def plan(built=None, metrics=None):
-    """Of the wall, or of another one, with results and words that tests look for."""
-    built = built or wall()
-    made = plan_of(built, stone_set(), SETTINGS, {}).plan
-    area = 6.0 * built.site.units_per_px**2
-    usual = PlanMetrics(0.4773, None, 4.25, 0.6724, 0.31, 0.12, 0.41, 0.39, area)
+def plan(px_per_m=None, metrics=None):
+    """Return the plan of the wall with results and words that tests look for."""
+    made = example(1.0, px_per_m).plan
+    usual = PlanMetrics(0.4773, None, 4.25, 0.6724, 0.31, 0.12, 0.41, 0.39, 32.0)
     placement = {"rule": "eq12", "note": "<script>alert(1)</script>"}
-    settings = {**made.settings, "placement": placement}
-    stopped = "no acceptable place was found five times in a row"
-    return replace(made, settings=settings, stopped=stopped, metrics=metrics or usual)
+    return replace(
+        made,
+        source={**made.source, "path": "<b>PR.png", "sha256": "0" * 64},
+        settings={**made.settings, "placement": placement},
+        stopped="no acceptable place was found five times in a row",
+        metrics=metrics or usual,
+    )

@@ -79,10 +79,10 @@ def written_page(folder, view):
 
 def example_view(plan=None, wall=None):
     """Return the view of the wall made by hand, or of another one, with a plan that says more."""
-    wall = examples.wall() if wall is None else wall
+    wall = wall or examples.wall()
     model = model_from_labels(wall.labels).model
     found = SimpleNamespace(
-        plan=plan or examples.plan(wall),
+        plan=plan or examples.plan(),
         wall=wall,
         model=model,
         resistance=lateral_resistance(model, mechanism=True),
@@ -101,11 +101,11 @@ def test_the_report_says_every_step_result_input_and_notice_and_needs_no_other_f
     for stone in (*examples.CLUSTERS, examples.UNUSED):
         assert re.search(rf"\b{stone}\b", page.text)
     for said in (
-        f"Push wedge {examples.WEDGE} in under the left end of stone 300 (step 5): 3 {TIMES} 2 px",
-        "Stones left over: 40", "5 of 6 stones, ", "0.672", "4.25 %", f"44.0 {TIMES} 20.0 px",
+        f"Push wedge {examples.WEDGE} in under the right end of stone 7 (step 3): 8 {TIMES} 4 px",
+        "Stones left over: 9", "5 of 6 stones, ", "0.672", "4.25 %", f"84.0 {TIMES} 30.0 px",
         "no acceptable place was found five times in a row", "0" * 64, "W112", "3.46 s",
         "Load multiplier (adequacy factor) to the left", "upper bound", "placement.rule",
-        "in three walls of masons, of other stones", "1 (6.0 px²)", "Geometry raster",
+        "in three walls of masons, of other stones", "1 (32.0 px²)", "Geometry raster",
         "Stones touch where their pixels have edges or corners in common",
     ):  # fmt: skip
         assert said in page.text
@@ -152,7 +152,7 @@ def test_a_plan_on_outlines_says_so(tmp_path):
 def test_missing_metrics_are_not_defined_a_missing_index_a_dash_and_metres_centimetres(tmp_path):
     missing = PlanMetrics(0.4, None, None, None, 0.1, 0.1, None, 0.3, 0.0)
     wall = examples.wall(px_per_m=50.0)
-    plan = examples.plan(wall, metrics=missing)
+    plan = examples.plan(50.0, missing)
     values = {card.symbol or card.name: card.value for card in cards(plan)}
     for name in ("F_AV", "F_AH", "F_LR", f"{ALPHA} left"):
         assert values[name] == "not defined"
@@ -172,7 +172,7 @@ def test_missing_metrics_are_not_defined_a_missing_index_a_dash_and_metres_centi
     assert set(INDICES) == set(INDEX_NAMES)
     told = ["\N{EN DASH}" if i == "LLC" else number(step.indices[i]) for i in INDICES]
     assert cells[-2 - len(told) : -2] == told
-    assert "<td>14.0</td><td>8.0</td>" in text
+    assert "<td>20.0</td><td>20.0</td>" in text
 
 
 def test_a_wall_that_was_not_planned_has_a_table_of_blocks(tmp_path, monkeypatch):
