@@ -12,14 +12,12 @@ from drystone.contacts.settled import model_with_outlines
 from drystone.kernels.polygons import on_grid
 from drystone.model.builder import HAND, BuilderErrors
 from drystone.model.outlines import Outlines
-from drystone.model.placement import Placement, Settled, Wedge
+from drystone.model.placement import Placement, Wedge
 from drystone.model.wall import Group, outlined
 from drystone.planner.evaluate import Evaluator
 from drystone.planner.replay import judged, replayed
 from drystone.planner.seats import Seats
 from drystone.planner.sturdy import ROUNDS, falls_when_let_go, sturdy_model_with
-from drystone.settle.placing import settled_placement
-from drystone.settle.rest import placed_outline
 from drystone.settle.settings import SettleSettings
 from drystone.statics.flow.release import fall_of
 from drystone.statics.lp.program import assemble
@@ -77,11 +75,8 @@ def laid(planner, stone_id, left, level):
     if planner.settings.geometry == "raster":
         posed = planner.workshop.book.pose(stone, 0.0)
         return Group(Placement(posed, site.height_px - 10 * int(level) - 10, int(left)))
-    x, y = left + 10.0, 5.0 + 10.01 * level + 0.01
-    corners = placed_outline(planner.workshop.outlines.outline(stone), 0.0, x, y)
-    outlines = Outlines.empty(site)
-    placement = settled_placement(outlines, site, stone, 0.0, Settled(x, y, corners), "left", 0)
-    return Group(placement)
+    bottom = 0.01 + 10.01 * level
+    return Group(scenes.settled_at(planner.build.wall, stone, (left, bottom)))
 
 
 def scene(settings):

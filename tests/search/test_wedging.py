@@ -12,7 +12,7 @@ from drystone import Planner, Site, lateral_resistance
 from drystone.contacts.settled import PlacedPolygons, model_of_outlines, model_with_outlines
 from drystone.generate import PolygonSettings, RubbleSettings, polygon_stones, rubble_stones
 from drystone.kernels.polygons import on_grid
-from drystone.model.placement import Settled, Wedge
+from drystone.model.placement import Wedge
 from drystone.model.wall import Group, outlined
 from drystone.planner.build import Solves
 from drystone.planner.deadline import Deadline, TimeIsUp
@@ -27,8 +27,6 @@ from drystone.search.wedge_draft import (
 )
 from drystone.search.wedging import wedged_up
 from drystone.search.yard import Yard
-from drystone.settle.placing import settled_placement
-from drystone.settle.rest import placed_outline
 from drystone.statics.incremental import HighsAnalysis, SimplexAnalysis
 from drystone.statics.model import GROUND
 from tests.kernels.simplex_walls import needs_kernel
@@ -287,11 +285,7 @@ def built(*places, wedges=None):
     """A wall of stones between blocks at its ends: id, left and lower end of each, wedges."""
     made, groups = planner(), []
     for stone_id, left, low in (*ENDS, *places):
-        stone, nothing = STONES.by_id(stone_id), made.build.wall.exact
-        outline = made.workshop.outlines.outline(stone)
-        x, y = on_grid(np.array([left, low]) - outline.min(axis=0)).tolist()
-        settled = Settled(x, y, placed_outline(outline, 0.0, x, y))
-        placement = settled_placement(nothing, SITE, stone, 0.0, settled, "left", 0)
+        placement = scenes.settled_at(made.build.wall, STONES.by_id(stone_id), (left, low))
         own = (wedges or {}).get(stone_id, [])
         under = tuple(Wedge(0, stone_id, NOTHING, 0, 0, on_grid(corners)) for corners in own)
         groups.append(Group(placement, under))

@@ -7,15 +7,13 @@ import numpy as np
 
 from drystone.contacts.settled import model_of_outlines
 from drystone.io.plan_folder import blocks_to_json
-from drystone.kernels.polygons import on_grid, turn
-from drystone.model.placement import Settled
+from drystone.kernels.polygons import on_grid
 from drystone.model.site import Site
 from drystone.model.wall import Wall
 from drystone.model.wedge_shape import WedgeSettings
 from drystone.planner.settings import PlannerSettings
-from drystone.settle.placing import settled_placement, settled_wedge
-from drystone.settle.rest import placed_outline
-from tests.planner.scenes import stones_of_masks
+from drystone.settle.placing import settled_wedge
+from tests.planner.scenes import settled_at, stones_of_masks
 from tests.verify.examples import LAID, SLAB, WALL_PX, WEDGE, plan_of, stone_set
 
 GAP_PX = 0.01
@@ -56,14 +54,8 @@ def hanging_example():
 def with_stone(wall, stones, turned, corner):
     """Add a stone, the bottom-left corner of its box at a place; the slab with its wedge."""
     stone_id, angle_deg = turned
-    outline = stones.by_id(stone_id).outline_within(SETTINGS.settle.outline_px)
-    x, y = (np.array(corner) - turn(outline, angle_deg).min(axis=0)).tolist()
-    x, y = on_grid(np.array([x, y])).tolist()
-    settled = Settled(x, y, placed_outline(outline, angle_deg, x, y))
     side = "right" if stone_id == 300 else "left"
-    placement = settled_placement(
-        wall.exact, wall.site, stones.by_id(stone_id), angle_deg, settled, side, 0
-    )
+    placement = settled_at(wall, stones.by_id(stone_id), corner, angle_deg, side)
     if stone_id != SLAB:
         return wall.add(placement)
     above = wall.add(placement).outlines
