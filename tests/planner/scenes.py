@@ -149,10 +149,14 @@ def result_of(planner):
     return finished(planner, stopped, provenance, 0.0)
 
 
+def read_again(plan):
+    """A plan as it is written and read."""
+    return plan_from_json(json.loads(json.dumps(plan_to_json(plan))))
+
+
 def proven(result, stones):
     """See that a plan, written and read again, is true; return what was checked."""
-    plan = plan_from_json(json.loads(json.dumps(plan_to_json(result.plan))))
-    report = check_plan(plan, stones, wall_labels=result.wall.labels)
+    report = check_plan(read_again(result.plan), stones, wall_labels=result.wall.labels)
     assert report.problems == ()
     return report
 

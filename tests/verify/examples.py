@@ -8,13 +8,14 @@ import numpy as np
 from drystone.model.placement import Placement, Wedge
 from drystone.model.plan import Plan
 from drystone.model.site import Site
-from drystone.model.stone import Source, Stone, StoneSet
+from drystone.model.stone import StoneSet
 from drystone.model.wall import Wall
 from drystone.planner.events import Stopped
 from drystone.planner.planner import Planner
 from drystone.planner.settings import PlannerSettings
 from drystone.poses import PoseBook
 from drystone.search.plan_result import finish
+from tests.planner.scenes import stones_of_masks
 
 SETTINGS = PlannerSettings(orientations="quarter", two_sided=True)
 WEDGE, SLAB, L_STONE = 301, 7, 12
@@ -50,16 +51,7 @@ def stone_set():
         300: np.ones((10, 12), bool),
         9: np.ones((4, 4), bool),
     }
-    return in_a_row(masks, "stones.png", "ab" * 32, 30)
-
-
-def in_a_row(masks, path, sha256, height_px):
-    """Return stones that lie beside each other in an image."""
-    stones, left = [], 2
-    for stone_id, mask in masks.items():
-        stones.append(Stone(stone_id, mask, left_px=left, bottom_px=3))
-        left += mask.shape[1] + 2
-    return StoneSet(tuple(stones), Source(path, sha256, left, height_px))
+    return stones_of_masks(masks)
 
 
 @cache

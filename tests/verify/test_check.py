@@ -14,6 +14,7 @@ from drystone.verify import claims
 from drystone.verify.check import check_plan
 from drystone.verify.replay import PENETRATION_PX
 from drystone.verify.report import PrefixAlpha
+from tests.planner.scenes import read_again
 from tests.verify.exact_examples import GAP_PX, block_model, exact_example, hanging_example
 from tests.verify.examples import L_STONE, SLAB, WEDGE, example
 from tests.verify.tampering import (
@@ -60,9 +61,9 @@ def either(request):
 @pytest.mark.parametrize(("scale", "px_per_m"), [(1.0, 137.0), (0.5, 200.0)])
 def test_true_plan_passes_in_any_unit_and_at_any_scale(make, scale, px_per_m):
     made = make(scale, px_per_m)
-    plan = plan_from_json(json.loads(json.dumps(plan_to_json(made.plan))))
+    plan, labels = read_again(made.plan), made.wall.labels
     blocks = block_model(made) if make is exact_example else None
-    report = check_plan(plan, made.stones, wall_labels=made.wall.labels, blocks=blocks)
+    report = check_plan(plan, made.stones, wall_labels=labels, blocks=blocks)
     assert (report.ok, report.problems, report.notes) == (True, (), ())
     assert report.overlap_depth < 1e-9
     assert report.area_error == 0

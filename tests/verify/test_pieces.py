@@ -190,21 +190,11 @@ def test_check_does_not_take_the_word_of_whoever_reads_outlines(monkeypatch):
         assert ("E240" in codes(check_plan(made.plan, made.stones))) is named
 
 
-def ring(outer, inner):
-    y, x = np.mgrid[: 2 * int(outer) + 1, : 2 * int(outer) + 1] - outer
-    return (np.hypot(x, y) <= outer) & (np.hypot(x, y) >= inner)
-
-
-def planned(stones, width, height):
-    careless = greedy({"settle": {"trials": 0}})  # discs roll
-    return plan_wall(stones, width, height, seed=1, settings=careless, scale=1.0)
-
-
 def test_frames_are_laid_as_if_they_were_filled():
     solid, frame = np.ones((40, 40), bool), np.ones((40, 40), bool)
     frame[10:30, 10:30] = False
     kept, whole = (
-        planned(stones_of_masks(dict.fromkeys(range(1, 5), mask)), 160, 40)
+        plan_wall(stones_of_masks(dict.fromkeys(range(1, 5), mask)), 160, 40, settings=greedy())
         for mask in (frame, solid)
     )
     assert len(kept.plan.steps) == 4
@@ -213,16 +203,3 @@ def test_frames_are_laid_as_if_they_were_filled():
     mine, filled = kept.metrics, whole.metrics
     assert mine.F_SF == pytest.approx(0.75 * filled.F_SF)
     assert (mine.alpha_left, mine.F_LR) == (filled.alpha_left, filled.F_LR)
-
-
-def test_rings_among_discs_and_bricks_do_not_overlap():
-    shapes = [ring(22, 9)] * 5 + [ring(6.9, 0)] * 5 + [np.ones((20, 35), bool)] * 5
-    stones = stones_of_masks(dict(enumerate(shapes, 1)))
-    result = planned(stones, 180, 90)
-    placed = {step.stone for step in result.plan.stone_steps}
-    assert len(placed) >= 9
-    assert placed & {1, 2, 3, 4, 5}
-    report = check_plan(result.plan, stones, wall_labels=result.wall.labels)
-    assert report.problems == ()
-    assert report.overlap_depth < 0.05
-    assert report.area_error < 0.05

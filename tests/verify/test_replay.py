@@ -1,6 +1,5 @@
 """The wall of a plan is built again from its settings and poses."""
 
-import json
 from dataclasses import replace
 
 import numpy as np
@@ -9,18 +8,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from drystone.errors import PlanError
-from drystone.generate import PolygonSettings, polygon_stones
-from drystone.io.plan_json import plan_from_json, plan_to_json
 from drystone.model.placement import Placement
 from drystone.model.plan import StoneStep
 from drystone.model.site import Site
 from drystone.model.stone import StoneSet
-from drystone.planner.settings import METHODS, PlannerSettings, method_settings
+from drystone.planner.settings import METHODS, PlannerSettings
 from drystone.poses import PoseBook
-from drystone.search.plan_wall import plan_wall
 from drystone.verify.check import check_plan
 from drystone.verify.lengths import plan_settings
 from drystone.verify.replay import place_stone, rebuild_wall, replay_plan
+from tests.planner.scenes import read_again
 from tests.strategies import repeatable, stones
 from tests.verify.exact_examples import exact_example
 from tests.verify.examples import SLAB, WEDGE, example
@@ -30,10 +27,6 @@ from tests.verify.tampering import changed, moved, reshaped
 def assert_near(found, expected):
     """They are equal but for the rounding of lengths that were in metres."""
     np.testing.assert_allclose(found, expected, rtol=0, atol=1e-9)
-
-
-def read_again(plan):
-    return plan_from_json(json.loads(json.dumps(plan_to_json(plan))))
 
 
 @pytest.mark.parametrize("make", [example, exact_example])
@@ -99,23 +92,6 @@ def test_pieces_that_overlap_stay_in_the_replay_and_the_wall_ends_before(make, s
     hidden = replay_plan(moved(made.plan, 300, 4 - 74, 4), made.stones)
     assert [p.code for p in hidden.problems] == ["E221"]
     assert hidden.pieces[-1].item is None
-
-
-def test_wall_of_the_planner_is_rebuilt_and_its_plan_passes():
-    size = PolygonSettings(count=5, width_px=44, height_px=28)
-    stones = polygon_stones(size, np.random.default_rng(4))
-    settings = method_settings("best").updated({"geometry": "exact", "search": {"budget": 1}})
-    how = {"seed": 3, "settings": settings, "scale": 0.5, "px_per_m": 437.0}
-    result = plan_wall(stones, 160, 90, **how)
-    plan, labels = read_again(result.plan), result.wall.labels
-    report = check_plan(plan, stones, wall_labels=labels)
-    assert (report.problems, report.overlap_depth) == ((), 0.0)
-    found = rebuild_wall(plan, stones)
-    np.testing.assert_array_equal(found.labels, labels)
-    assert len(found.placements) == len(result.wall.placements) >= 4
-    for one, other in zip(found.placements, result.wall.placements, strict=True):
-        assert_near(one.settled.corners, other.settled.corners)
-        assert_near(one.posed.anchor, other.posed.anchor)
 
 
 def test_wall_that_cannot_be_built_is_refused_with_the_step():
