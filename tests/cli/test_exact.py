@@ -10,7 +10,7 @@ import pytest
 from drystone.io.plan_folder import BLOCKS
 from drystone.io.plan_json import read_plan
 from drystone.model.steps import piece_id
-from tests.cli.conftest import EXACT, UNTRIED, rewrite
+from tests.cli.conftest import EXACT, UNTRIED, listed, rewrite
 from tests.cli.test_planning import FILES
 
 
@@ -38,19 +38,27 @@ def test_best_plans_on_outlines_and_writes_them(rubble, settled, finished, tmp_p
     assert (metrics.F_LR_half, metrics.F_LR_double) == (None, None)
 
 
-def test_measure_and_analyse_look_at_the_outlines(settled, run):
-    plan = read_plan(settled)
-    report = run("analyse", settled, "--json").json()
-    assert report["F_LR"] == pytest.approx(plan.metrics.F_LR)
-    assert report["alpha_left"] == pytest.approx(plan.metrics.alpha_left)
-    assert report["blocks"] == len(plan.steps)
-    assert run("analyse", settled / BLOCKS, "--json").json()["F_LR"] == report["F_LR"]
-    measured = run("measure", settled, "--json").json()
-    for name in ("F_SF", "F_AV", "F_AH", "F_LR", "T_LEVEL", "E_FLUSH"):
-        assert measured[name] == pytest.approx(getattr(plan.metrics, name))
-    slippery = run("measure", settled, "--json", "--mu", ".2").json()["F_LR"]
-    assert slippery == pytest.approx(run("analyse", settled, "--json", "--mu", ".2").json()["F_LR"])
-    assert slippery != pytest.approx(measured["F_LR"])
+@pytest.mark.parametrize("planned", ["finished", "settled"])
+def test_measure_and_analyse_say_what_the_plan_says(planned, run, request):
+    folder = request.getfixturevalue(planned)
+    plan, exact = read_plan(folder), planned == "settled"
+    for given in (folder, folder / "plan.json"):
+        report = run("analyse", given, "--json").json()
+        for name in ("F_LR", "alpha_left"):
+            assert report[name] == pytest.approx(getattr(plan.metrics, name))
+        assert report["blocks"] == len(plan.steps)
+        measured = run("measure", given, "--json").json()
+        assert set(measured) == listed("measure")
+        size = (measured["width"], measured["height"], measured["stones"])
+        assert size == (70.0, 30.0, len(plan.stone_steps))
+        for name in ("F_AV", "F_AH", "F_LR", "T_LEVEL", "E_FLUSH"):
+            assert measured[name] == pytest.approx(getattr(plan.metrics, name))
+        assert measured["F_SF"] == pytest.approx(plan.metrics.F_SF, rel=1e-6 if exact else 0.02)
+    if exact:
+        assert run("analyse", folder / BLOCKS, "--json").json()["F_LR"] == report["F_LR"]
+    slippery = [run(one, folder, "--json", "--mu", ".2").json() for one in ("measure", "analyse")]
+    assert slippery[0]["F_LR"] == pytest.approx(slippery[1]["F_LR"])
+    assert slippery[0]["F_LR"] != pytest.approx(measured["F_LR"])
 
 
 def test_metres(rubble, settled, metric, tmp_path, run):

@@ -2,7 +2,6 @@
 
 import json
 import os
-import sys
 
 import numpy as np
 import pytest
@@ -11,7 +10,7 @@ from PIL import Image
 from drystone.io.photo_beside import PhotoSidecar, write_sidecar
 from drystone.io.plan_json import read_plan
 from drystone.io.wall_image import read_wall_image
-from tests.cli.conftest import WALL, masks_in
+from tests.cli.conftest import WALL
 from tests.io import labelled
 from tests.io.test_walls import drawn
 
@@ -190,12 +189,3 @@ def test_a_byte_order_mark_is_no_fault(settled_copy, run):
     for path in settled_copy.glob("*.json"):
         path.write_bytes(b"\xef\xbb\xbf" + path.read_bytes())
     assert [run(command, settled_copy).code for command in ("check", "measure")] == [0, 0]
-
-
-@pytest.mark.skipif(sys.platform in {"win32", "darwin"}, reason="names are Unicode there")
-def test_names_of_files_that_are_no_utf_8_do_not_end_the_work_after_it_is_done(tmp_path, run):
-    masks, out = masks_in(tmp_path / "masks"), tmp_path / "out"
-    (masks / os.fsdecode(b"\xdcbersicht.txt")).write_bytes(b"")
-    ran = run("plan", masks, "--wall", "40x20", "--scale", "1", "--method", "paper", "-o", out)
-    assert (ran.code in (0, 4), "drystone: W117 " in ran.err) == (True, True)
-    assert "W117" in (out / "report.html").read_text("utf-8")
