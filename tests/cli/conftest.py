@@ -8,9 +8,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
 import pytest
-from PIL import Image
 
 from drystone.cli import main
 from drystone.cli.commands import craft
@@ -91,13 +89,9 @@ def run(capsys):
     return call
 
 
-def masks_in(folder):
-    """Write four masks of 20 x 10 px into a new folder."""
-    folder.mkdir()
-    for number in range(4):
-        mask = np.pad(np.full((10, 20), 255, np.uint8), 3)
-        Image.fromarray(mask).save(folder / f"{number}.png")
-    return folder
+def contents(folder):
+    """The files of a folder, by name."""
+    return {path.name: path.read_bytes() for path in folder.iterdir() if path.is_file()}
 
 
 def rewrite(path, tamper):

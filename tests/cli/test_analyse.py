@@ -15,7 +15,7 @@ from drystone.model.builder import HAND, BuilderErrors
 from drystone.statics.lp.program import EquilibriumProgram
 from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
 from drystone_lab.statics_cases import WALLS
-from tests.cli.conftest import keys, listed
+from tests.cli.conftest import contents, keys, listed
 from tests.statics.walls import coursed
 
 
@@ -98,11 +98,11 @@ def test_a_new_analysis_leaves_nothing_of_the_one_before_unless_it_is_refused(to
     asked = ("analyse", tower, "--associative-only", "-o", out, "--overwrite")
     ran = run(*asked, "--scatter", "2", "--mu", ".4:.8", "--jobs", "2")
     assert (ran.code, "2 walls, seed 0, mu 0.4 to 0.8" in ran.out) == (0, True)
-    before = {path.name: path.read_bytes() for path in out.iterdir()}
+    before = contents(out)
     assert "scatter.png" in before
     for more in ("--load points", "--dead 9@0,0:1,0", "--load gravity --tilt 3"):
         assert run(*asked, *more.split()).code in (2, 3)
-        assert {path.name: path.read_bytes() for path in out.iterdir()} == before
+        assert contents(out) == before
     assert run(*asked, "--load", "gravity", "--dead", "1@0,3:.5,0").code == 0
     left = {path.name for path in out.iterdir()}
     assert not left & {"scatter.png", "friction.png", "report.html", "blocks.csv", "contacts.csv"}

@@ -13,13 +13,8 @@ from drystone.cli.commands import segment
 from drystone.cli.commands.segment import WRITTEN
 from drystone.io.photo_beside import LABELS, PhotoSidecar, write_sidecar
 from drystone.io.wall_image import write_labels
-from tests.cli.conftest import WALL, masks_in
+from tests.cli.conftest import WALL, contents
 from tests.statics.walls import stacked
-
-
-def contents(folder):
-    return {path.name: path.read_bytes() for path in folder.iterdir() if path.is_file()}
-
 
 PLAN = f"plan {{at}} {' '.join(WALL)} -o {{folder}}"
 
@@ -136,7 +131,10 @@ def test_a_choice_that_is_read_is_kept(command, rubble, plan_copy, run):
 
 
 def test_nothing_is_drawn_among_masks(tmp_path, run):
-    masks, out = masks_in(tmp_path / "masks"), tmp_path / "out"
+    masks, out = tmp_path / "masks", tmp_path / "out"
+    masks.mkdir()
+    for number in range(4):
+        write_labels(np.pad(np.full((10, 20), 255, np.uint16), 3), masks / f"{number}.png")
     before, plan = contents(masks), ("plan", masks, "--wall", "40x20", *WALL[2:], "-o")
     assert run(*plan, out).code in (0, 4)
     for asked in (

@@ -20,7 +20,7 @@ from drystone.planner.events import Callbacks
 from drystone.search.plan_result import PlanResult
 from drystone.search.plan_wall import SoFar, plan_wall
 from drystone.search.state import Progress, SearchState
-from tests.cli.conftest import SIZE, UNTRIED, WALL, coarse, plan_into, rewrite
+from tests.cli.conftest import SIZE, UNTRIED, WALL, coarse, contents, plan_into, rewrite
 from tests.planner.scenes import after_looks, greedy, rubble
 
 SEARCH = ("--wall", SIZE, "--scale", "1", "--seed", "1", "--budget", "3", *UNTRIED)
@@ -195,7 +195,7 @@ def test_a_finished_plan_is_left_as_it_is(finished, standing, rubble, bricks, tm
         (0, bricks, standing, ("--wall", "60x20", *WALL[2:])),
     ):
         out = shutil.copytree(given, tmp_path / given.parent.name)
-        before = {path.name: path.read_bytes() for path in out.iterdir()}
+        before = contents(out)
         asked = ("plan", stones, *wall, "--seed", 1, "-o", out, "--resume")
         again, as_json = run(*asked), run(*asked, "--json")
         assert (again.code, as_json.code, "finished" in again.err) == (code, code, True)
@@ -203,7 +203,7 @@ def test_a_finished_plan_is_left_as_it_is(finished, standing, rubble, bricks, tm
         told = as_json.json()
         assert (told["status"], told["shortfall"], told["seconds"]) == ("finished", None, None)
         assert told["placed"] == len(read_plan(out).stone_steps)
-        assert {path.name: path.read_bytes() for path in out.iterdir()} == before
+        assert contents(out) == before
 
 
 def limit(monkeypatch, looks):

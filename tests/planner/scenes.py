@@ -136,6 +136,12 @@ def finish(planner, steps=None):
     return planner
 
 
+def careless(seed, site=ROUNDED_SITE):
+    """A planner that has laid rounded stones without trials: in rehearsals some of them fall."""
+    settings = greedy({"search": {"budget": 2}, "settle": {"trials": 0}})
+    return finish(Planner(ROUNDED, site, seed=seed, settings=settings))
+
+
 def of_rubble(settings=None, steps=None, *, seed=0, **more):
     """A planner of :func:`rubble` that has taken all its steps, or so many."""
     return finish(Planner(rubble(), RUBBLE_SITE, seed=seed, settings=settings, **more), steps)

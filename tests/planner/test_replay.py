@@ -326,9 +326,7 @@ def seats_of(workshop, settings):
 
 @pytest.fixture(scope="module")
 def careless():
-    """A planner that has built without trials."""
-    settings = scenes.greedy({"settle": {"trials": 0}})
-    return scenes.finish(Planner(scenes.ROUNDED, scenes.ROUNDED_SITE, seed=2, settings=settings))
+    return scenes.careless(2)
 
 
 def shares(seats, planner):

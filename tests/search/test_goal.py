@@ -8,7 +8,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drystone import Planner
 from drystone.craft.bond import bond_faults
 from drystone.craft.masonry import Masonry
 from drystone.model.builder import BuilderErrors, put_down_with, stratified
@@ -74,9 +73,7 @@ def test_a_stack_bond_costs_more_than_the_bricks_that_a_bond_leaves_out():
 
 @pytest.fixture(scope="module")
 def careless():
-    """A planner that has built a wall of which stones fall."""
-    settings = scenes.greedy({"settle": {"trials": 0}, "search": {"budget": 2}})
-    return scenes.finish(Planner(scenes.ROUNDED, scenes.ROUNDED_SITE, seed=1, settings=settings))
+    return scenes.careless(1)
 
 
 def test_what_nearly_falls_in_a_rehearsal_counts_too(careless):

@@ -17,10 +17,7 @@ from tests.planner import scenes
 
 @pytest.fixture(scope="module")
 def careless():
-    """One that has laid round stones without trials."""
-    settings = scenes.greedy({"search": {"budget": 2}, "settle": {"trials": 0}})
-    planner = Planner(scenes.ROUNDED, Site.from_source(160, 100, 0.5), seed=0, settings=settings)
-    return scenes.finish(planner)
+    return scenes.careless(0, Site.from_source(160, 100, 0.5))
 
 
 @pytest.fixture(scope="module")

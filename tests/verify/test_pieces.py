@@ -113,7 +113,7 @@ def test_block_is_buried_by_what_is_wide_enough_above_it():
         (box(2, 12, 8, 16), True),
         (box(2, -9, 8, -0.01), False),  # it stands on it
         (box(-5, -9, 15, 0.04), False),  # as deep in its bed as it may be
-        (box(-5, -9, 15, 0.2), True),
+        (box(-5, -9, 15, 0.08), True),
         (box(-9, 0, -0.01, 16), False),  # beside it, and higher
         (box(-9, 12, 0.9, 16), False),  # a sliver above it
         (box(-9, 12, 1.1, 16), True),
