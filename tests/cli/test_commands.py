@@ -51,8 +51,7 @@ def test_analyse_draws(tmp_path, run):
     _tower(tower)
     ran = run("analyse", tower, "-o", out)
     assert (ran.code, {path.name for path in out.iterdir()}) == (0, ANALYSED)
-    for said in ("alpha = 0.5000", "Rocking of stone 9 about its left"):
-        assert said in ran.out
+    assert "Rocking of stone 9 about its left" in ran.out
     # A wall that does not stand is drawn as it falls, and says why.
     before = (out / "mechanism_left.png").read_bytes()
     labels = np.zeros((20, 20), np.uint32)
@@ -60,7 +59,6 @@ def test_analyse_draws(tmp_path, run):
     write_labels(labels, floating)
     ran = run("analyse", floating, "-o", out, "--overwrite")
     assert (ran.code, "unstable" in ran.out) == (5, True)
-    assert "W302 1 of 2 blocks touch neither the ground" in ran.err
     measured = run("measure", floating, "--json")
     assert (measured.json()["F_LR"], "W302" in measured.err) == (None, True)
     labels[5:15, 7:17], labels[5:10, 2:7] = 2, 0

@@ -3,15 +3,13 @@
 import json
 import re
 import shlex
-from pathlib import Path
 
 import numpy as np
 import pytest
 from PIL import Image
 
 from tests.cli.conftest import UNTRIED
-
-DOCS = Path(__file__).parents[2] / "docs"
+from tests.pages import DOCS, printed
 
 WIDTH, HEIGHT = 640, 440
 """Of the photograph of a wall, px."""
@@ -34,10 +32,9 @@ TRACED = (
 """A wall of 13 stones, as clicked by eye on a picture at twice its size; joints stay open."""
 
 
-def printed(page, kind):
-    """The lines of the blocks of a kind."""
-    blocks = re.findall(rf"^ *```{kind}\n(.*?)^ *```$", page, re.MULTILINE | re.DOTALL)
-    return "".join(blocks).splitlines()
+def lines_of(*asked):
+    """The lines of all blocks of a kind."""
+    return "".join(printed(*asked)).splitlines()
 
 
 def photograph(path):
@@ -67,9 +64,8 @@ def traced(tmp_path, monkeypatch):
 
 
 def test_every_command_of_the_page_gives_what_it_says(traced, run):
-    whole = (DOCS / "for-engineers.md").read_text(encoding="utf-8")
-    page = whole.split("## From a photograph of a wall\n")[1].split("\n## ")[0]
-    commands = [shlex.split(line)[1:] for line in printed(page, "sh")]
+    page, section = "for-engineers.md", "From a photograph of a wall"
+    commands = [shlex.split(line)[1:] for line in lines_of(page, "sh", section)]
     assert [words[0] for words in commands] == [
         "trace", "stones", "analyse", "analyse", "stones", "measure",
     ]  # fmt: skip
@@ -78,7 +74,7 @@ def test_every_command_of_the_page_gives_what_it_says(traced, run):
     assert (traced / "trace" / "outlines.html").exists()
     assert "13 stones" in told[1].out
     assert "own weight           stands" in told[2].out
-    assert set(printed(page, "text")) <= set(told[2].out.splitlines())
+    assert set(lines_of(page, "text", section)) <= set(told[2].out.splitlines())
     assert "m wide" in told[2].out
     values = [re.search(r"^F_LR +(0\.\d+)", one.out, re.MULTILINE) for one in told[2:4]]
     assert values[0][1] == values[1][1]
@@ -104,8 +100,7 @@ def test_following_the_hints_ends_with_a_number(traced, run):
 def test_the_photograph_becomes_a_wall_that_holds(tmp_path, monkeypatch, run):
     (tmp_path / "docs").symlink_to(DOCS)
     monkeypatch.chdir(tmp_path)
-    page = (DOCS / "tutorial.md").read_text(encoding="utf-8")
-    lines = [line for line in printed(page, "sh") if line.startswith("drystone")]
+    lines = [line for line in lines_of("tutorial.md", "sh") if line.startswith("drystone")]
     segment, plan, check, *others = (shlex.split(line)[1:] for line in lines)
     assert [segment[0], plan[0], check[0]] == ["segment", "plan", "check"]
     assert [words[0] for words in others] == ["analyse", "craft", "export"]  # of what plan wrote
@@ -113,7 +108,7 @@ def test_the_photograph_becomes_a_wall_that_holds(tmp_path, monkeypatch, run):
     plan += ["--budget", "1", *UNTRIED]
     told = [run(*words) for words in (segment, plan, check)]
     assert [told[0].code, told[1].code in (0, 4), told[2].code] == [0, True, 0]
-    text = printed(page, "text")
+    text = lines_of("tutorial.md", "text")
     ends = ("complete: ", "incomplete: ")
     found = text[: next(k for k, line in enumerate(text) if line.startswith(ends))]
     assert len(found) > 4

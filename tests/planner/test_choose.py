@@ -1,10 +1,8 @@
 """Choosing: between sides (Eq. 29), by cost, and by policies, of which all walls are true."""
 
-import re
 import sys
 from dataclasses import replace
 from importlib.metadata import EntryPoint, EntryPoints
-from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -31,6 +29,7 @@ from drystone.selection.policies.registry import BUILT_IN, GROUP
 from drystone.selection.policies.settings import PolicySettings
 from drystone.selection.scored import ScoreSettings
 from drystone.statics.model import Interface, RigidBlockModel
+from tests.pages import printed
 from tests.planner import scenes
 
 EMPTY = Build(Wall.empty(ds.Site(20, 20)), RigidBlockModel((), ()))
@@ -233,7 +232,6 @@ def test_only_walls_that_stand_are_offered():
     assert seen == [[made[0].stone_id, made[4].stone_id]]
 
 
-PAGE = Path(__file__).resolve().parents[2] / "docs" / "for-researchers.md"
 STONES = scenes.rubble(1, 6)
 
 
@@ -344,11 +342,10 @@ def test_a_policy_is_not_searched_with(rule):
 def test_the_policy_of_the_document_builds_a_wall_that_is_checked_without_it(
     installed, monkeypatch
 ):
-    text = PAGE.read_text(encoding="utf-8")
-    programs = re.findall(r"^```python\n(.*?)^```$", text, re.MULTILINE | re.DOTALL)
+    programs = printed("for-researchers.md", "python")
     (program,) = (one for one in programs if "class Largest" in one)
     names = {}
-    exec(compile(program, PAGE.name, "exec"), names)  # noqa: S102 - our own document
+    exec(program, names)  # noqa: S102 - our own document
     installed(made=names["Largest"])
     result = planned(by("mine", {"geometry": "raster"}), seed=2)
     first = result.plan.stone_steps[0].stone

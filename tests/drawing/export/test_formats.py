@@ -1,8 +1,6 @@
 """What all formats have in common: names, bytes that repeat, scales, extras that are missing."""
 
-import re
 import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,6 +9,7 @@ from drystone.drawing.export.formats import FORMATS, ExportSettings
 from drystone.errors import UsageError
 from tests.drawing import plans
 from tests.drawing.export.drawn_walls import assembly
+from tests.pages import printed
 
 SETTINGS = ExportSettings()
 
@@ -52,21 +51,18 @@ def test_an_extra_that_is_missing_is_named(name, module, code, extra, monkeypatc
         FORMATS[name].files(assembly(), SETTINGS)
 
 
-PAGE = Path(__file__).resolve().parents[3] / "docs" / "for-robotics.md"
-
-
 def test_the_programs_of_the_page_run(tmp_path, monkeypatch, capsys):
     wall = plans.assembly("exact")
     for name in ("poses", "compas"):
         FORMATS[name].write(wall, tmp_path / "out", ExportSettings())
     monkeypatch.chdir(tmp_path)
-    programs = re.findall(r"^```py\n(.*?)^```$", PAGE.read_text("utf-8"), re.MULTILINE | re.DOTALL)
+    programs = printed("for-robotics.md", "py")
     assert len(programs) == 2
     names = {}
     for program in programs:
-        exec(compile(program, PAGE.name, "exec"), names)  # noqa: S102 - our own document
-    printed = capsys.readouterr().out.split()
-    assert [word for word in printed if "_" in word] == [part.name for part in wall.stones]
+        exec(program, names)  # noqa: S102 - our own document
+    told = capsys.readouterr().out.split()
+    assert [word for word in told if "_" in word] == [part.name for part in wall.stones]
     standing = names["standing"]
     last = np.array([standing.vertex_coordinates(key) for key in standing.vertices()])
     count = len(wall.parts[-1].corners)

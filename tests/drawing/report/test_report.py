@@ -26,6 +26,7 @@ from drystone.model.plan import PlanMetrics
 from drystone.statics.limit import lateral_resistance
 from tests.drawing import examples
 from tests.drawing.plans import analysed, planned
+from tests.pages import printed
 from tests.verify.exact_examples import exact_example
 
 ALPHA = "\N{GREEK SMALL LETTER ALPHA}"
@@ -184,9 +185,7 @@ def test_a_wall_that_was_not_planned_has_a_table_of_blocks(tmp_path, monkeypatch
     monkeypatch.chdir(tmp_path)
     bricks = BrickSettings(count=3, height_px=10, aspect=2)
     write_labels(lay_out(brick_stones(bricks, np.random.default_rng(1))), Path("wall.png"))
-    document = (Path(__file__).resolve().parents[3] / "docs" / "viewer.md").read_text("utf-8")
-    program = document.split("```python\n")[2].split("```")[0]
-    exec(program, {})  # noqa: S102 - our own page
+    exec(printed("viewer.md", "python")[1], {})  # noqa: S102 - our own page
     assert "Wall in the garden" in Path("report.html").read_text("utf-8")
 
 

@@ -4,7 +4,6 @@ import subprocess
 import sys
 from copy import deepcopy
 from dataclasses import replace
-from pathlib import Path
 
 import gymnasium
 import numpy as np
@@ -21,6 +20,7 @@ from drystone.selection.policies.choices import LOWEST
 from drystone.selection.policies.learned import FEATURES, features
 from drystone_lab.rl.env import WallEnv
 from drystone_lab.rl.episode import ARRIVING, KINDS, DrawSettings, Episode, draw_wall, in_order
+from tests.pages import printed
 from tests.planner import scenes
 
 SMALL = DrawSettings(kinds=("brick", "polygon"), stones=7, size_px=12.0)
@@ -167,9 +167,7 @@ def test_settings_that_are_refused(made, wrong):
 
 
 def test_example_of_the_documents_runs(capsys):
-    page = (Path(__file__).parents[3] / "docs" / "evidence" / "learning.md").read_text("utf-8")
-    code = page.split("```python\n")[1].split("```")[0]
-    names = {}
+    code, names = printed("evidence/learning.md", "python")[0], {}
     exec(code.replace("gymnasium.make(", "gymnasium.make(draw=draw, id="), names | {"draw": SMALL})  # noqa: S102 - ours
     assert "F_SF" in capsys.readouterr().out
 
