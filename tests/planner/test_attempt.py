@@ -61,17 +61,6 @@ def test_nothing_is_evaluated_twice(settings, monkeypatch):
         assert one.course_height_px == fresh.course_height_px
 
 
-def test_the_height_of_a_course_is_the_mean_of_other_stones():
-    # Eq. 8: the first stone is compared with the mean height of the other candidates.
-    stones = blocks({1: (20, 10), 2: (20, 10), 3: (20, 4)})
-    settings = ds.PlannerSettings(sampling="full", orientations="sf")
-    attempt = _attempt(settings, planner=ds.Planner(stones, ds.Site(60, 20), settings=settings))
-    chosen = attempt.choose(np.random.default_rng(0))
-    assert chosen.stone_id == 1
-    assert chosen.proposal.course_height_px == chosen.course_height_px == 7.0
-    assert chosen.indices.NHR == pytest.approx(0.3)
-
-
 @pytest.mark.parametrize(("choice", "tried"), [("candidates", 4), ("placement", 2)])
 def test_orientations_are_candidates_or_the_rule_picks_one(choice, tried):
     changes = {"sampling": "full", "orientations": "quarter", "orientation_choice": choice}
