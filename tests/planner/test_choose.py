@@ -17,7 +17,6 @@ from drystone.model.wall import Group, Wall
 from drystone.planner.build import Build, Candidate, Proposal
 from drystone.planner.choose import (
     better_side,
-    choose_by_algorithm2,
     choose_by_policy,
     choose_by_score,
 )
@@ -75,15 +74,6 @@ class _Judge:
     def __call__(self, proposals):
         self.batches.append([p.stone_id for p in proposals])
         return [_candidate(p, self.llc[p.stone_id]) for p in proposals]
-
-
-def test_algorithm_2_analyses_everything_and_gives_the_candidate_back():
-    judge = _Judge({1: 0.2, 2: 0.9, 3: None})
-    chosen = choose_by_algorithm2([_proposal(i) for i in (1, 2, 3)], judge, SelectionSettings())
-    assert chosen.stone_id == 2
-    assert judge.batches == [[1, 2, 3]]
-    nothing = _Judge({1: None, 2: 0.0})
-    assert choose_by_algorithm2([_proposal(1), _proposal(2)], nothing, SelectionSettings()) is None
 
 
 def _by_score(costs, found, sure=None, **settings):
