@@ -14,6 +14,7 @@ from drystone.cli.commands.segment import WRITTEN
 from drystone.io.photo_beside import LABELS, PhotoSidecar, write_sidecar
 from drystone.io.wall_image import write_labels
 from tests.cli.conftest import WALL, contents
+from tests.photo.test_segment import on_blue
 from tests.statics.walls import stacked
 
 PLAN = f"plan {{at}} {' '.join(WALL)} -o {{folder}}"
@@ -59,11 +60,8 @@ def test_what_a_plan_has_is_not_written_over(rubble, plan_copy, run):
 
 
 def test_segment_keeps_its_photograph(tmp_path, run):
-    """Two stones on blue cloth."""
-    picture = np.full((300, 400, 3), (60, 90, 150), np.uint8)
-    picture[60:140, 60:160] = picture[130:210, 220:330] = (170, 160, 140)
     photo, out = tmp_path / "photo.png", tmp_path / "out"
-    Image.fromarray(picture).save(photo)
+    Image.fromarray(on_blue((120, 60), (350, 60))).save(photo)
     before = photo.read_bytes()
     for name, more in (("photo.jpg", ()), ("stones.png", ("--overwrite",))):
         photo = photo.rename(tmp_path / name)

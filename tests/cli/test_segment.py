@@ -8,7 +8,6 @@ import numpy as np
 import pypdfium2
 import pytest
 from PIL import Image
-from scipy import ndimage
 
 from drystone.cli.commands.segment import WRITTEN, scale_from
 from drystone.cli.parser import build_parser
@@ -17,6 +16,7 @@ from drystone.photo.markers import find_markers
 from drystone.photo.scale import scale_and_view
 from drystone_lab.photographs.rendered import PhotoLevel, photograph
 from drystone_lab.photos import overlaps
+from tests.photo.test_segment import sand
 
 SHEET = PhotoLevel(
     name="sheet", count=5, width_px=720, height_px=540, px_per_m=800.0, gap_px=10, tilt_deg=12.0,
@@ -123,12 +123,8 @@ def test_one_file_has_one_median_stone_and_its_photograph(run, tmp_path, bare):
 
 
 def test_what_is_no_photograph_of_stones_is_doubtful_first_and_by_its_exit_code(run, tmp_path):
-    bed, out, rng = tmp_path / "bed.png", tmp_path / "out", np.random.default_rng(1)
-    grains = ndimage.gaussian_filter(rng.standard_normal((300, 400)), 3)
-    picture = np.clip(120 + 40 * grains / grains.std(), 0, 255)[..., None].repeat(3, 2)
-    rows, cols = np.indices((300, 400))
-    picture[np.hypot(rows - 150, cols - 200) < 24] = 170, 70, 50
-    Image.fromarray(picture.astype(np.uint8)).save(bed)
+    bed, out = tmp_path / "bed.png", tmp_path / "out"
+    Image.fromarray(sand(np.random.default_rng(1))).save(bed)
     ran = run("segment", bed, "-o", out)
     assert ran.code == 5
     assert ran.out.startswith("doubtful: the ground is not plain")
