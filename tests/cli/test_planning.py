@@ -12,16 +12,14 @@ from rich.progress import Progress
 
 from drystone.cli import planning, progress
 from drystone.cli.planning import read_line
-from drystone.drawing.words.planned import ending, profile_rows, profile_summary
+from drystone.drawing.words.planned import ending, profile_rows
 from drystone.io.plan_json import read_plan
 from drystone.io.wall_image import write_labels
 from drystone.model.plan import PlanMetrics
 from drystone.model.stone import Stone, StoneSet
 from drystone.planner.events import Incumbent
 from drystone.planner.profile import PARTS
-from drystone.search.plan_wall import plan_wall
 from tests.cli.conftest import EXACT, SIZE, UNTRIED, WALL, keys, listed
-from tests.planner import scenes
 
 
 def test_sizes_are_metres_centimetres_or_px():
@@ -91,24 +89,6 @@ def test_a_search_goes_on_from_a_plan_without_what_is_banned(settled, rubble, tm
     assert first not in {step.stone for step in other.stone_steps}
     assert first in other.unused
     assert run("check", tmp_path / "other", "--stones", rubble).code == 0
-
-
-def test_the_search_is_a_row_and_its_workers_are_processes():
-    """A small wall, and three more that are searched."""
-    changes = {"search": {"budget": 4}, "settle": {"trials": 0}, "goal": {"fallen": 0.0}}
-    settings = scenes.greedy(changes)
-    searched = plan_wall(scenes.rubble(1), 100, 36, settings=settings, scale=1.0)
-    for jobs in (1, 2):
-        summary = profile_summary(searched, jobs)
-        parts = summary["parts"]
-        assert sum(parts.values()) == pytest.approx(summary["seconds"])
-        assert parts["search"] > 0 <= parts["other"]
-        lines = dict(profile_rows(summary))
-        assert lines["search"].endswith("%")  # no microseconds a candidate
-        assert lines["processes"] == f"{jobs}; the search is by the clock"
-        assert "threads" not in lines
-        for row in ("steps", "candidates"):
-            assert lines[row].endswith("(without those of the search)")
 
 
 def test_what_is_left_over_is_said_as_it_is():
@@ -225,12 +205,25 @@ def test_a_wall_is_complete_or_not(bricks, tmp_path, run):
 SEARCH = ("--wall", SIZE, "--scale", "1", "--budget", "3", "--seed", "1", *UNTRIED)
 
 
+def check_profile_of_search(profile):
+    """The search is a row, and its workers are processes."""
+    parts, lines = profile["parts"], dict(profile_rows(profile))
+    assert sum(parts.values()) == pytest.approx(profile["seconds"])
+    assert parts["search"] > 0 <= parts["other"]
+    assert lines["search"].endswith("%")  # no microseconds a candidate
+    assert lines["processes"] == "2; the search is by the clock"
+    assert "threads" not in lines
+    for row in ("steps", "candidates"):
+        assert lines[row].endswith("(without those of the search)")
+
+
 def test_walls_to_choose_from(rubble, tmp_path, run):
     out = tmp_path / "out"
     choice = out / "pareto"
-    ran = run("plan", rubble, *SEARCH, "--pareto", "--json", "--profile", "-o", out)
+    ran = run("plan", rubble, *SEARCH, "--pareto", "--json", "--profile", "--jobs", 2, "-o", out)
     assert ran.code in (0, 4)
     summary = ran.json()
+    check_profile_of_search(summary["profile"])
     walls, metrics = summary["pareto"], set(PlanMetrics.__dataclass_fields__)
     found = keys(summary, "profile").union(*walls)
     assert found - metrics == listed("plan") - metrics  # "the metrics" on the page

@@ -171,8 +171,8 @@ def test_pixels_are_those_that_a_stone_fills_now():
 @scenes.GEOMETRIES
 def test_a_course_is_begun_with_the_height_it_was_begun_with(settings):
     planner, groups = scene(settings)
-    steps = [groups["ground"], groups["upon"]]
-    build, _ = again(planner, steps, heights={1: 8.0})
+    steps = [groups["ground"], groups["beside"]]
+    build, _ = again(planner, steps, heights={1: 8.0, 4: 7.0})
     assert [a.course_height_px for a in build.actions] == [8.0, None]
     assert build.actions[0].indices.NHR == pytest.approx(0.2)
 
