@@ -221,11 +221,6 @@ def test_a_label_image_names_stones(tmp_path, run):
         assert said in ran.out
     assert "1, 5, 9" not in run("craft", stack, "--cases", 0).out
     assert not re.search(r"and \d+ more", run("craft", stack, "--cases", 50).out)
-    found = run("craft", stack, "--json").json()
-    assert list(found["rules"]) == list(RULES)
-    assert len(found["rules"]["cross_joints"]["cases"]) == 12
-    assert found["rules"]["running_joints"]["number"] == 5.0
-    assert found["rules"]["pins"]["verdict"] == "not judged"
     limits = ("--limit", "running_joints=5:6", "--limit", "cross_joints=1:9")
     said = run("craft", stack, "--explain", *limits).out
     assert "running joints    good        5 courses (good <= 5, fair <= 6)" in said
@@ -235,7 +230,7 @@ def test_a_label_image_names_stones(tmp_path, run):
 def test_a_plan_names_steps(finished, run):
     plan = read_plan(finished / "plan.json")
     found = run("craft", finished, "--json").json()
-    assert set(found) == listed("craft")
+    assert (set(found), list(found["rules"])) == (listed("craft"), list(RULES))
     assert found["stones"] == len(plan.stone_steps)
     assert found["wedges"] == len(plan.wedge_steps)
     steps = {piece_id(step): step.step for step in plan.steps}
