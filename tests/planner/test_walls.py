@@ -249,3 +249,14 @@ def test_a_plan_is_measured_by_its_own_size_whatever_its_digits_and_unit(width, 
     result = ds.plan_wall(stones, width, 53, settings=scenes.greedy(), scale=0.5, px_per_m=px_per_m)
     assert result.wall.labels.shape[1] == math.floor(width / 2 + 0.5)
     scenes.proven(result, stones)
+
+
+def test_walls_that_are_no_whole_number_of_columns_take_stones_from_both_ends():
+    # The last .45 px of the wall have no column, and stones at its end fill half of one there.
+    stones, site = scenes.rubble(4, 10), ds.Site.from_source(100.45, 36.0)
+    result = ds.plan_wall(stones, 100.45, 36.0, seed=1, settings=scenes.greedy())
+    check(result, stones, scenes.greedy(), site)
+    assert result.wall.labels.shape == (36, 100)
+    corners = [p.settled.corners for p in result.wall.placements if p.settled is not None]
+    assert max(float(one[:, 0].max()) for one in corners) > 100.5
+    assert sum(p.side == "right" for p in result.wall.placements) > 1
