@@ -3,6 +3,7 @@
 import math
 from dataclasses import replace
 from itertools import chain
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ import shapely
 from drystone import Planner, Site, lateral_resistance
 from drystone.kernels.polygons import turn
 from drystone.kernels.profiles import hanging
+from drystone.kernels.raster import wrap_deg
 from drystone.planner.evaluate import Evaluator, Loaded
 from drystone.planner.search_settings import LayingSettings
 from drystone.planner.seats import Seats
@@ -47,11 +49,20 @@ class Plot:
 
     def lay(self, *courses, laying=None):
         plan = CoursePlan(tuple(map(tuple, courses)), 0.0)
-        return lay(plan, self.yard.planner().build, self.yard, laying)
+        states, _ = lay(plan, self.yard.planner().build, self.yard, laying)
+        return SimpleNamespace(plan=plan, states=states, build=states[-1])
 
 
-def statuses(laid):
-    return [[one.status for one in course] for course in laid.courses]
+def turns(laid):
+    """Return by how much each stone is turned from its plan; None for those that are not laid."""
+    posed = {p.stone_id: p.posed.angle_deg for p in laid.build.wall.placements}
+
+    def turn_of(stone):
+        if stone.stone_id in posed:
+            return 180 * round(abs(wrap_deg(posed[stone.stone_id] - stone.angle_deg)) / 180)
+        return None
+
+    return [[turn_of(stone) for stone in course] for course in laid.plan.courses]
 
 
 def boxes(laid):
@@ -80,10 +91,8 @@ def lay_bond(plot):
 
 def test_bricks_lie_as_planned():
     laid = lay_bond(bricks())
-    assert statuses(laid) == [["as planned"] * 3, ["as planned"] * 4]
-    stones = [one.stone for one in chain(*laid.courses)]
-    assert [one.stone_id for one in stones] == [1, 2, 3, 4, 5, 7, 6]
-    for one in stones:
+    assert turns(laid) == [[0] * 3, [0] * 4]
+    for one in chain(*laid.plan.courses):
         box = boxes(laid)[one.stone_id]
         assert box[0] == pytest.approx(one.left_px, abs=0.3)
         assert box[2] == pytest.approx(one.right_px, abs=0.3)
@@ -94,7 +103,7 @@ def test_bricks_lie_as_planned():
     ]
     assert all(action.proposal.trial_angle_deg == 0.0 for action in laid.build.actions)
     # What would stand out above the wall is not laid.
-    assert statuses(lay_bond(bricks(height=19))) == [["as planned"] * 3, ["no rest"] * 4]
+    assert turns(lay_bond(bricks(height=19))) == [[0] * 3, [None] * 4]
 
 
 def test_a_stone_is_pushed_to_its_neighbour_from_either_side():
@@ -116,7 +125,7 @@ def test_a_course_closes_up_where_a_stone_is_left_out():
     plot = bricks()
     low = plot.planned(1, 0, 0, top=2)
     laid = plot.lay([low, plot.planned(2, 20, 0), plot.planned(3, 40, 0)])
-    assert statuses(laid) == [["no place", "as planned", "as planned"]]
+    assert turns(laid) == [[None, 0, 0]]
     assert boxes(laid)[2][0] == pytest.approx(0.0, abs=0.3)
     assert boxes(laid)[3][0] == pytest.approx(20.0, abs=0.3)
 
@@ -125,22 +134,23 @@ OVERHANG = {1: (22, 10), 2: (40, 10), 3: (50, 20), 4: (28, 20), 5: (10, 10)}
 """A support, a stone that stands out over it, stones that would tip it over, a narrow support."""
 
 
-def test_what_cannot_be_laid_is_told():
+def test_what_cannot_be_laid_is_left_out():
     plot = Plot(blocks(OVERHANG), Site(50, 40), {"settle": {"trials": 0}})
     place = plot.planned
-    walls = {
+    walls = [
         # Without room; far beside the only stone that could carry it; and too much of a load.
-        "no place": ([place(4, 0, 0), place(1, 28, 0), place(5, 40, 0, "right")],),
-        "no rest": ([place(5, 0, 0)], [place(2, 0, 10)]),
-        "falls": ([place(1, 0, 0)], [place(2, 0, 10)], [place(3, 0, 20)]),
-    }
-    for why, courses in walls.items():
+        ([place(4, 0, 0), place(1, 28, 0), place(5, 40, 0, "right")],),
+        ([place(5, 0, 0)], [place(2, 0, 10)]),
+        ([place(1, 0, 0)], [place(2, 0, 10)], [place(3, 0, 20)]),
+    ]
+    for courses in walls:
         laid = plot.lay(*courses)
-        told = [*chain(*statuses(laid))]
-        assert told == ["as planned"] * (len(told) - 1) + [why]
+        told = [*chain(*turns(laid))]
+        assert told == [0] * (len(told) - 1) + [None]
         assert len(laid.build.actions) == len(boxes(laid)) == len(told) - 1
-    used = plot.lay([place(1, 0, 0)], [place(1, 25, 0)])
-    assert statuses(used) == [["as planned"], ["used"]]
+    again = plot.lay([place(1, 0, 0)], [place(1, 25, 0)])
+    assert len(again.build.actions) == 1
+    assert boxes(again)[1][0] == pytest.approx(0.0, abs=0.3)
 
 
 def test_what_cannot_be_laid_in_its_turn_is_laid_elsewhere_in_its_course():
@@ -149,14 +159,15 @@ def test_what_cannot_be_laid_in_its_turn_is_laid_elsewhere_in_its_course():
         [plot.planned(1, 0, 0)], [plot.planned(2, 0, 10)], [plot.planned(4, 22, 20)],
         laying=LayingSettings(reach=0.05),
     )  # fmt: skip
-    assert statuses(laid) == [["as planned"], ["as planned"], ["elsewhere"]]
+    assert turns(laid) == [[0], [0], [0]]
     assert boxes(laid)[4][0] < 15.0
+    assert laid.build.actions[-1].side == "left"
     # From the left the first place that comes to mind is at the end that tips over.
     laid = plot.lay(
         [plot.planned(1, 28, 0, "right")], [plot.planned(2, 10, 10, "right")],
         [plot.planned(4, 10, 20)], laying=LayingSettings(reach=0.05, starts=1),
     )  # fmt: skip
-    assert statuses(laid) == [["as planned"], ["as planned"], ["elsewhere"]]
+    assert turns(laid) == [[0], [0], [0]]
     assert laid.build.actions[-1].side == "right"
     assert boxes(laid)[4][2] == pytest.approx(50.0, abs=0.3)
 
@@ -181,24 +192,24 @@ def test_of_places_that_do_not_stand_sturdily_the_next_best_is_taken(monkeypatch
     plot = bricks()
     many = LayingSettings(apart=0.1, enough=9)
     laid = plot.lay([plot.planned(1, 10, 0)], laying=many)
-    assert statuses(laid) == [["as planned"]]
+    assert turns(laid) == [[0]]
     assert len(asked) == 2
     assert boxes(laid)[1][0] == pytest.approx(asked[1])
     assert asked[0] != pytest.approx(asked[1], abs=1.0)
 
 
 @pytest.mark.parametrize(
-    ("shares", "taken", "status"),
+    ("shares", "taken", "turned"),
     [
-        ([0.0], 0, "as planned"),
-        ([0.5, 0.0], 1, "as planned"),
-        ([0.5, 0.2, 0.3], 1, "as planned"),
-        ([None, 0.6], 1, "as planned"),
-        ([0.9, 0.9, 0.9, 0.9, 0.9, 0.1], 5, "half turn"),
-        ([None] * 99, None, "falls"),
+        ([0.0], 0, 0),
+        ([0.5, 0.0], 1, 0),
+        ([0.5, 0.2, 0.3], 1, 0),
+        ([None, 0.6], 1, 0),
+        ([0.9, 0.9, 0.9, 0.9, 0.9, 0.1], 5, 180),
+        ([None] * 99, None, None),
     ],
 )
-def test_of_places_that_stand_the_one_that_falls_least_is_taken(monkeypatch, shares, taken, status):
+def test_of_places_that_stand_the_one_that_falls_least_is_taken(monkeypatch, shares, taken, turned):
     asked = []
 
     def falls(_, group, wall, least):
@@ -210,7 +221,7 @@ def test_of_places_that_stand_the_one_that_falls_least_is_taken(monkeypatch, sha
     monkeypatch.setattr(Seats, "falls", falls)
     plot = bricks()
     laid = plot.lay([plot.planned(1, 10, 0)], laying=LayingSettings(apart=0.1, enough=4))
-    assert statuses(laid) == [[status]]
+    assert turns(laid) == [[turned]]
     if taken is None:
         assert not laid.build.actions
     else:
@@ -222,19 +233,19 @@ def test_of_places_that_stand_the_one_that_falls_least_is_taken(monkeypatch, sha
 def test_a_stone_on_its_tip_is_turned_by_half():
     plot = Plot(scenes.stones_of_masks({1: np.ones((12, 24), bool), 2: TIP}), Site(60, 30))
     laid = plot.lay([plot.planned(1, 0, 0), plot.planned(2, 24, 0)])
-    assert statuses(laid) == [["as planned", "half turn"]]
+    assert turns(laid) == [[0, 180]]
     angle = laid.build.actions[1].stabilised.placement.posed.angle_deg
     assert abs(angle) == pytest.approx(180.0, abs=1.0)
     half = plot.lay([plot.planned(1, 0, 0), plot.planned(2, 24, 0, angle=-180.0)])
-    assert statuses(half) == [["as planned", "as planned"]]
+    assert turns(half) == [[0, 0]]
 
 
 def test_a_stone_that_does_not_rest_is_wedged():
     stones, site = blocks({1: (10, 10), 2: (10, 8), 3: (30, 10)}), Site(38, 30)
-    for method, status, wedges in (("wedge", "as planned", [(3, 4)]), ("none", "no rest", [])):
+    for method, turned, wedges in (("wedge", 0, [(3, 4)]), ("none", None, [])):
         plot = Plot(stones, site, {"stabilise": {"method": method}, "settle": {"trials": 0}})
         laid = plot.lay([plot.planned(1, 0, 0), plot.planned(2, 20, 0)], [plot.planned(3, 0, 10)])
-        assert statuses(laid)[1] == [status]
+        assert turns(laid)[1] == [turned]
         assert [(wedge.under, wedge.id) for wedge in laid.build.wall.wedges] == wedges
 
 
@@ -248,7 +259,7 @@ def test_a_stone_goes_where_the_wall_resists_more():
         plot.lay(*courses, laying=replace(free, llc=llc, analysed=analysed))
         for llc, analysed in ((0.0, 30), (1.0, 30), (1.0, 1))
     ]
-    assert [statuses(wall)[2] for wall in walls] == [["as planned"]] * 3
+    assert [turns(wall)[2] for wall in walls] == [[0]] * 3
     cheapest, strongest, first = (wall.build.actions[-1] for wall in walls)
     assert strongest.indices.LLC > 1.2 * cheapest.indices.LLC
     # Further in over what carries it.

@@ -99,11 +99,10 @@ class Evaluator:
             )
         return self._loaded(build.analysis, model)
 
-    def sturdily(self, build: Build, blocks: list[Outlined]) -> Loaded | None:
-        """Return the same of its sturdy model; None when nothing is known of that of the wall."""
+    def sturdily(self, build: Build, blocks: list[Outlined]) -> Loaded:
+        """Return the same of its sturdy model."""
         analysis = build.sturdy_analysis
-        if analysis is None:
-            return None
+        assert analysis is not None  # noqa: S101 - a wall of outlines has one
         with self.profile.part("contacts"):
             model = sturdy_model_with(
                 analysis.model, blocks, build.wall.exact, self.settings.settle

@@ -94,6 +94,6 @@ def _laid(
 ) -> FoundWall:
     """Lay the courses of a plan that are not laid yet; the stones that are left go on top."""
     left = CoursePlan(begun.plan.courses[len(begun.ends) - 1 :], begun.plan.cost)
-    laid = lay(left, start, yard, laying)
-    ends = (*begun.ends, *(len(state.actions) for state in laid.states[1:]))
-    return FoundWall.of(yard.built_up(laid.build, rng), Courses(begun.plan, ends), laid.solves)
+    states, solves = lay(left, start, yard, laying)
+    ends = (*begun.ends, *(len(state.actions) for state in states[1:]))
+    return FoundWall.of(yard.built_up(states[-1], rng), Courses(begun.plan, ends), solves)

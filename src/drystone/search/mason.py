@@ -7,10 +7,8 @@ plan, keeps the course's width, and leaves a wall that stands.
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
-from itertools import chain
+from dataclasses import dataclass
 from operator import attrgetter
-from typing import Literal
 
 from drystone.kernels.raster import wrap_deg
 from drystone.model.landscape import Landscape
@@ -26,59 +24,26 @@ from drystone.search.letting_go import Aim, Hand, Resting
 from drystone.search.yard import Yard
 from drystone.settle.placing import settled_in
 
-Status = Literal["as planned", "half turn", "elsewhere", "used", "no place", "no rest", "falls"]
-"""What became of a planned stone.
-
-Laid as planned, turned by half, or elsewhere in its course after it could not be laid in its turn.
-Not laid: it is in the wall already; there is nowhere to let it go near its planned top; it rests
-nowhere there (of stones on outlines); or the wall would not stand.
-"""
-
-HALVES: tuple[tuple[Status, float], ...] = (("as planned", 0.0), ("half turn", 180.0))
+HALVES_DEG = 0.0, 180.0
 """Turns from the planned pose that are tried, one after the other."""
 
 SIDES: tuple[Side, ...] = ("left", "right")
 
 
-@dataclass(frozen=True, eq=False)
-class StoneLaying:
-    """What became of a planned stone."""
-
-    stone: PlannedStone
-    status: Status
-    action: Candidate | None = None  # what is done; None where it is not laid
-    solves: Solves = field(default_factory=Solves)  # trouble with its places
-
-
-@dataclass(frozen=True, eq=False)
-class CourseLaying:
-    """A course plan, laid."""
-
-    states: tuple[Build, ...]  # before the first course, and after each
-    courses: tuple[tuple[StoneLaying, ...], ...]  # in the order of the plan
-
-    @property
-    def build(self) -> Build:
-        """The wall after the last course."""
-        return self.states[-1]
-
-    @property
-    def solves(self) -> Solves:
-        """What trouble the solver had."""
-        return sum((one.solves for one in chain(*self.courses)), Solves())
-
-
 def lay(
     plan: CoursePlan, build: Build, yard: Yard, laying: LayingSettings | None = None
-) -> CourseLaying:
-    """Lay a course plan on what is built; stones that are in the wall already are passed over."""
+) -> tuple[list[Build], Solves]:
+    """Lay a course plan on what is built; stones that are in the wall already are passed over.
+
+    Return the states before the first course and after each, and the trouble with all places.
+    """
     mason = Mason.of(yard, laying or yard.settings.laying)
-    states, courses = [build], []
+    states, solves = [build], Solves()
     for course in plan.courses:
-        after, became = mason.course(states[-1], course)
+        after, trouble = mason.course(states[-1], course)
         states.append(after)
-        courses.append(became)
-    return CourseLaying(tuple(states), tuple(courses))
+        solves += trouble
+    return states, solves
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,74 +77,62 @@ class Mason:
         views = {side: SideView.bare(width_px, side, mu, laying.column_px) for side in SIDES}
         return cls(yard, laying, hand, evaluator, views)
 
-    def course(
-        self, build: Build, course: Sequence[PlannedStone]
-    ) -> tuple[Build, tuple[StoneLaying, ...]]:
+    def course(self, build: Build, course: Sequence[PlannedStone]) -> tuple[Build, Solves]:
         """Lay the stones of a course in their order, on the same wall as before with more on it."""
         width_px = self.yard.workshop.site.extent_px[0]
         # Of each side, as it sees them: the planned right end of the stone that was planned last,
         # and the right end of the one that was laid last.
         planned, reached = dict.fromkeys(SIDES, 0.0), dict.fromkeys(SIDES, 0.0)
-        became: list[StoneLaying] = []
+        solves, left_out = Solves(), []
         for stone in course:
             side = stone.side
             left, right = _seen_from(side, stone.left_px, stone.right_px, width_px)
             # As far from its neighbour as planned, but no further in than planned.
             aim = min(left, reached[side] + left - planned[side])
-            became.append(self._laid(build, stone, side, aim))
-            planned[side], action = right, became[-1].action
-            if action is not None:
-                build = build.add(action, keep=True)
-                x_px = action.stabilised.placement.exact.corners[:, 0].tolist()
-                _, reached[side] = _seen_from(side, min(x_px), max(x_px), width_px)
-        # What could not be laid is tried anywhere in its course, from its own side first.
-        for k, one in enumerate(became):
-            if one.action is not None or one.status == "used":
+            action, trouble = self._laid(build, stone, side, aim)
+            planned[side], solves = right, solves + trouble
+            if action is None:
+                left_out.append(stone)
                 continue
-            status, solves = one.status, one.solves
-            for side in sorted(SIDES, key=lambda side: side != one.stone.side):
-                again = self._laid(build, one.stone, side, None)
-                solves += again.solves
-                if again.action is not None:
-                    build = build.add(again.action, keep=True)
-                    status = "elsewhere"
+            build = build.add(action, keep=True)
+            x_px = action.stabilised.placement.exact.corners[:, 0].tolist()
+            _, reached[side] = _seen_from(side, min(x_px), max(x_px), width_px)
+        # What could not be laid is tried anywhere in its course, from its own side first.
+        for stone in left_out:
+            for side in sorted(SIDES, key=lambda side: side != stone.side):
+                action, trouble = self._laid(build, stone, side, None)
+                solves += trouble
+                if action is not None:
+                    build = build.add(action, keep=True)
                     break
-            became[k] = StoneLaying(one.stone, status, again.action, solves)
-        return build, tuple(became)
+        return build, solves
 
     def _laid(
         self, build: Build, planned: PlannedStone, side: Side, left: float | None
-    ) -> StoneLaying:
-        """Choose how a stone is laid, with its left end near a place of the view or anywhere."""
+    ) -> tuple[Candidate | None, Solves]:
+        """Choose how a stone is laid, with its left end near a place of the view or anywhere.
+
+        None where it is in the wall already or cannot be laid; says what trouble there was, too.
+        """
         workshop = self.yard.workshop
+        surest, solves = None, Solves()
         if planned.stone_id not in workshop.remaining(build):
-            return StoneLaying(planned, "used")
+            return surest, solves
         site = workshop.site
         view = self.views[side] = self.views[side].grown(build.wall.exact.polygons)
         unit_px = workshop.stock.mean_height_px / site.scale
         highest_px = site.extent_px[1] + self.yard.settings.settle.beyond_px
-        stone = workshop.stones.by_id(planned.stone_id)
-        reasons: list[Status] = []
-        least, surest = math.inf, None
-        solves = Solves()
-        for status, half_deg in HALVES:
+        stone, least = workshop.stones.by_id(planned.stone_id), math.inf
+        for half_deg in HALVES_DEG:
             angle_deg = wrap_deg(planned.angle_deg + half_deg)
             turned = workshop.outlines.hung(stone, angle_deg, side).turned
             aim = Aim(left, planned.top_px, angle_deg, highest_px, unit_px)
-            starts = self.hand.starts(turned, view, aim)
-            resting = self.hand.resting(turned, view, aim, starts)
+            resting = self.hand.resting(turned, view, aim, self.hand.starts(turned, view, aim))
             least, action, trouble = self._surest(build, stone, angle_deg, side, resting, least)
-            solves += trouble
-            if action is not None:
-                surest = StoneLaying(planned, status, action)
-                if not least:
-                    break
-            reasons.append("falls" if resting else "no rest" if starts else "no place")
-        if surest is not None:
-            return replace(surest, solves=solves)
-        # Why not: how far the pose came that came furthest.
-        order: tuple[Status, ...] = ("falls", "no rest", "no place")
-        return StoneLaying(planned, min(reasons, key=order.index), None, solves)
+            surest, solves = action or surest, solves + trouble
+            if not least:
+                break
+        return surest, solves
 
     def _surest(
         self, build: Build, stone: Stone, angle_deg: float, side: Side,
@@ -202,10 +155,9 @@ class Mason:
                 if one.cost == math.inf:
                     break
                 sturdy = self.evaluator.sturdily(build, one.blocks)
-                if sturdy is not None:
-                    solves += trouble(one.loaded, sturdy) - trouble(one.loaded)
-                    if not sturdy.grown.resistance.stable:
-                        continue
+                solves += trouble(one.loaded, sturdy) - trouble(one.loaded)
+                if not sturdy.grown.resistance.stable:
+                    continue
                 place = one.place
                 stabilised = settled_in(
                     build.wall, stone, side, place.repose, place.wedge,
