@@ -202,7 +202,7 @@ def wedged_build():
     """A slab of 40 x 8 source px on two wedges of 4 x 2 working px."""
     site = ds.Site.from_source(60, 40, SCALE, PX_PER_M)
     planner = ds.Planner(blocks({7: (40, 8)}), site)
-    posed, row = planner.workshop.initial(7), site.height_px - 2
+    posed, row = planner.workshop.poses(7)[0], site.height_px - 2
     wedges = [Wedge(8 + k, 7, np.ones((2, 4), bool), row, col) for k, col in ((0, 2), (1, 16))]
     placement = Placement(posed, row - posed.height_px, 1)
     planner.restore(planner.build.wall.add(placement, tuple(wedges)), {})

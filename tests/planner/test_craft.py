@@ -5,21 +5,19 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drystone import PlannerSettings, Site, Stone
+from drystone import Planner, PlannerSettings, Site, Stone
 from drystone.model.landscape import Landscape
 from drystone.model.placement import Placement, Wedge
 from drystone.model.wall import Group, Wall
 from drystone.planner.craft import PoseCosts, action_craft, place_cost, pose_cost
-from drystone.planner.stock import Rest, Stock, sides_of
+from drystone.planner.stock import Rest, Stock
 from drystone.planner.workshop import Workshop
 from drystone.poses import PoseBook
 from drystone.selection.scored import PIN_BONUS, ScoreSettings, craft_cost
 from tests.planner.scenes import blocks
 from tests.strategies import posed_on_walls, repeatable
 
-STOCK = Stock(
-    narrowest_px=4.0, mean_height_px=5.0, mean_area_px=50.0, median_area_px=50.0, largest_id=9
-)
+STOCK = Stock(narrowest_px=4.0, mean_height_px=5.0, mean_area_px=50.0, median_area_px=50.0)
 SITE = Site(40, 20)
 
 
@@ -127,17 +125,21 @@ def workshop_of(sizes):
 def test_stock_and_the_sides_that_are_left():
     workshop = workshop_of({7: (20, 10), 300: (8, 4), 12: (12, 6)})
     stock = workshop.stock
-    assert (stock.narrowest_px, stock.largest_id) == (8.0, 300)
+    assert stock.narrowest_px == 8.0
     assert stock.mean_height_px == pytest.approx(20 / 3)
     assert stock.mean_area_px == pytest.approx((200 + 32 + 72) / 3)
-    assert stock.sides == {(10, 20): 1, (4, 8): 1, (6, 12): 1}
+    assert stock.sides == {7: (10, 20), 300: (4, 8), 12: (6, 12)}
     # One pose at a time is enough.
-    assert Stock.of(map(workshop.initial, (7, 12, 300))) == stock
-    workshop = workshop_of({1: (20, 10), 2: (8, 4), 3: (10, 20), 4: (8, 4)})
-    poses, sides = {i: workshop.initial(i) for i in (1, 2, 3, 4)}, workshop.sides
-    left = sides - sides_of([poses[1], poses[2]])
-    assert left == {(10, 20): 1, (4, 8): 1} == sides_of([poses[3], poses[4]])
-    assert sides == {(10, 20): 2, (4, 8): 2}
+    assert Stock.of(workshop.poses(i)[0] for i in (7, 12, 300)) == stock
+    # Nobody waits for what is placed, nor for what is banned.
+    stones = blocks({1: (20, 10), 2: (8, 4), 3: (10, 20), 4: (14, 4)})
+    planner = Planner(stones, SITE, settings=PlannerSettings(ban=(4,)))
+    built = next(planner.steps())
+    left = {1: (10, 20), 2: (4, 8), 3: (10, 20)}
+    del left[built.stone_id]
+    rest, asked = planner.workshop.rest(built.build), Rest.of([*left.values()], SITE)
+    assert rest.width_px.tolist() == asked.width_px.tolist()
+    assert rest.height_px.tolist() == asked.height_px.tolist()
 
 
 @pytest.mark.parametrize(
@@ -151,7 +153,7 @@ def test_stock_and_the_sides_that_are_left():
 )
 def test_rest_lays_stones_flat_on_each_other_and_any_way_beside(sizes, heights, widths):
     workshop = workshop_of(sizes)
-    rest = Rest.of(workshop.sides, workshop.site)
+    rest = Rest.of([*workshop.stock.sides.values()], workshop.site)
     assert (rest.height_px.shape, rest.width_px.shape) == ((21,), (41,))
     assert np.flatnonzero(rest.height_px == 0).tolist() == heights
     assert np.flatnonzero(rest.width_px == 0).tolist() == widths

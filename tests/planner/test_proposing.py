@@ -246,7 +246,7 @@ def test_wedge_limits_are_in_source_px():
     settings = PlannerSettings().updated({"stabilise": {"margin": 0.1}, "wedge": {"area": 0.2}})
     stock = Stock(
         narrowest_px=4.0, mean_height_px=20.0, mean_area_px=400.0, median_area_px=400.0,
-        largest_id=9, sides=Counter({(7, 30): 2, (9, 9): 1}),
+        sides={1: (7, 30), 2: (7, 30), 9: (9, 9)},
     )  # fmt: skip
     limits = wedge_limits(settings, stock, Site(100, 50, 0.5))
     # The median stone is 20 working px in size, 40 source px.

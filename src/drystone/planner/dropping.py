@@ -130,7 +130,7 @@ def wedge_limits(settings: PlannerSettings, stock: Stock, site: Site) -> WedgeLi
         contact_px=0.5 * settle.contact_px,
         setback=settle.setback,
         # Where there is less room than the shortest side of a stone, none comes.
-        room_px=min((shorter for shorter, _ in stock.sides), default=0) / site.scale,
+        room_px=min((shorter for shorter, _ in stock.sides.values()), default=0) / site.scale,
         rest=settle.margin,
         steep=settle.steep,
     )

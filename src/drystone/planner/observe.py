@@ -21,7 +21,6 @@ from drystone.planner.measured import (
     require_known,
 )
 from drystone.planner.settings import PlannerSettings
-from drystone.planner.stock import sides_of
 from drystone.planner.workshop import Workshop
 
 Measurement: TypeAlias = Mapping[int, MeasuredPose] | NDArray[np.integer]
@@ -139,13 +138,9 @@ def without(
     """Return workshop and settings in which some stones are banned."""
     gone = set(lost)
     fitting = tuple(i for i in workshop.fitting if i not in gone)
-    poses = (workshop.initial(i) for i in workshop.fitting if i in gone)
     ban = tuple(sorted(gone.union(settings.ban)))
     pin = tuple(i for i in settings.pin if i not in gone)
-    return (
-        replace(workshop, fitting=fitting, sides=workshop.sides - sides_of(poses)),
-        replace(settings, ban=ban, pin=pin),
-    )
+    return replace(workshop, fitting=fitting), replace(settings, ban=ban, pin=pin)
 
 
 def _places(build: Build, measured: Measurement, workshop: Workshop) -> dict[int, MeasuredPlace]:

@@ -1,7 +1,7 @@
 """What the planner needs to know of the stone set as a whole."""
 
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -10,14 +10,6 @@ from numpy.typing import NDArray
 from drystone.kernels.sums import unfillable
 from drystone.model.pose import PosedStone
 from drystone.model.site import Site
-
-SideCounts = Counter[tuple[int, ...]]
-"""How many stones in their initial poses have a box of these sides, working px, ascending."""
-
-
-def sides_of(initial: Iterable[PosedStone]) -> SideCounts:
-    """Count the sides of stones in their initial poses."""
-    return Counter(tuple(sorted((posed.height_px, posed.width_px))) for posed in initial)
 
 
 @dataclass(frozen=True)
@@ -29,8 +21,8 @@ class Stock:
     mean_height_px: float
     mean_area_px: float
     median_area_px: float  # of the stones themselves, whatever their pixels
-    largest_id: int  # wedges are numbered after it
-    sides: SideCounts = field(default_factory=Counter, compare=False)
+    # of the box of each stone, by id: the shorter and the longer one
+    sides: Mapping[int, tuple[int, ...]] = field(default_factory=dict)
 
     @classmethod
     def of(cls, initial: Iterable[PosedStone]) -> "Stock":
@@ -39,17 +31,16 @@ class Stock:
         Each pose is looked at once, so that poses of a large set need not exist together.
         """
         found = [
-            (posed.height_px, posed.width_px, posed.area_px, posed.stone.id,
+            (posed.stone.id, posed.height_px, posed.width_px, posed.area_px,
              posed.stone.area_px * posed.scale**2) for posed in initial
         ]  # fmt: skip
-        heights, widths, areas, ids, own = zip(*found, strict=True)
+        ids, heights, widths, areas, own = zip(*found, strict=True)
         return cls(
             narrowest_px=float(min(widths)),
             mean_height_px=sum(heights) / len(found),
             mean_area_px=sum(areas) / len(found),
             median_area_px=float(np.median(own)),
-            largest_id=max(ids),
-            sides=Counter(tuple(sorted(sides)) for sides in zip(heights, widths, strict=True)),
+            sides={i: tuple(sorted(sides)) for i, *sides in zip(ids, heights, widths, strict=True)},
         )
 
 
@@ -64,9 +55,7 @@ class Rest:
     width_px: NDArray[np.int64]
 
     @classmethod
-    def of(cls, sides: SideCounts, site: Site) -> "Rest":
-        """Return it for the sides of the stones that are left."""
-        low: Counter[tuple[int, ...]] = Counter()
-        for (shorter, _), count in sides.items():
-            low[(shorter,)] += count
-        return cls(unfillable(low, site.height_px), unfillable(sides, site.width_px))
+    def of(cls, sides: Sequence[tuple[int, ...]], site: Site) -> "Rest":
+        """Return it for the sides of the stones that are left, ascending."""
+        flat = Counter(one[:1] for one in sides)
+        return cls(unfillable(flat, site.height_px), unfillable(Counter(sides), site.width_px))

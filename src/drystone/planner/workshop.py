@@ -1,7 +1,6 @@
 """Everything that is prepared once for a stone set and a site (Algorithm 1, line 2)."""
 
-from collections import Counter
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from statistics import fmean
 
 from drystone.clusters import cluster_stones
@@ -14,7 +13,7 @@ from drystone.planner.build import Build
 from drystone.planner.craft import PoseCosts
 from drystone.planner.seats import Seats
 from drystone.planner.settings import PlannerSettings
-from drystone.planner.stock import Rest, SideCounts, Stock, sides_of
+from drystone.planner.stock import Rest, Stock
 from drystone.planner.views import Views
 from drystone.poses import PoseBook
 from drystone.settle.book import OutlineBook
@@ -33,7 +32,6 @@ class Workshop:
     # ids of the stones that fit into the wall in a candidate pose and are not banned, ascending
     fitting: tuple[int, ...]
     stock: Stock  # sizes of the set
-    sides: SideCounts  # of the stones that fit
     memory: StabiliseMemory  # stabilises stones that are pixels
     outlines: OutlineBook  # turned outlines, for stones that settle on them
     costs: PoseCosts  # of their poses, wherever they go
@@ -46,18 +44,16 @@ class Workshop:
         """Prepare stones for a site; UsageErrors are those of :func:`fitting_stones`."""
         book = PoseBook(site.scale)
         fitting = fitting_stones(stones, site, settings, book)
-        # A banned boulder is no measure of what may be laid; ids of wedges come after all.
+        # A banned boulder is no measure of what may be laid.
         usable = [stones.by_id(i) for i in fitting] or list(stones)
         stock = Stock.of(book.pose(s, book.initial_angle(s)) for s in usable)
-        stock = replace(stock, largest_id=max(stone.id for stone in stones))
-        sides = stock.sides if fitting else Counter()
         clusters = cluster_stones(stones, book, settings.clusters)
         memory = StabiliseMemory(book, stock.mean_height_px, settings.stabilise)
         outlines = OutlineBook(settings.settle.outline_px, 1.0 / site.scale)
         mean_size = fmean(stone.area_px**0.5 for stone in usable)
         return cls(
-            stones, site, book, clusters, settings.orientations, fitting, stock, sides, memory,
-            outlines, PoseCosts(stock, frozenset(settings.pin)), Views(site),
+            stones, site, book, clusters, settings.orientations, fitting, stock, memory, outlines,
+            PoseCosts(stock, frozenset(settings.pin)), Views(site),
             Seats(mean_size, settings.settle, settings.mu, settings.pin, len(usable)),
         )  # fmt: skip
 
@@ -74,11 +70,6 @@ class Workshop:
         self._angles[stone_id] = tuple(angle for angle in asked if wrap_deg(angle) in known)
         return fitting
 
-    def initial(self, stone_id: int) -> PosedStone:
-        """Return the pose of largest SF of a stone (Eq. 12d)."""
-        stone = self.stones.by_id(stone_id)
-        return self.book.pose(stone, self.book.initial_angle(stone))
-
     def remaining(self, build: Build) -> tuple[int, ...]:
         """Return the ids of the stones that are left and fit into the wall, Omega_i."""
         placed = {action.stone_id for action in build.actions}
@@ -86,12 +77,11 @@ class Workshop:
 
     def next_wedge(self, build: Build) -> int:
         """Return the id of the next wedge: after the largest of a stone and those of wedges."""
-        return self.stock.largest_id + len(build.wall.wedges) + 1
+        return self.stones.stones[-1].id + len(build.wall.wedges) + 1
 
     def rest(self, build: Build) -> Rest:
         """Return what the stones that are left could still fill."""
-        placed = (self.initial(action.stone_id) for action in build.actions)
-        return Rest.of(self.sides - sides_of(placed), self.site)
+        return Rest.of([self.stock.sides[i] for i in self.remaining(build)], self.site)
 
 
 def fitting_stones(
@@ -126,7 +116,7 @@ def fitting_stones(
             where="--wall",
             cure="Leave them out with --skip-too-large, or build a larger wall.",
         )
-    largest = max(stone.id for stone in stones)
+    largest = stones.stones[-1].id
     if largest + 2 * len(stones) >= 2**32 - 1:  # each stone may get two wedges
         what = f"stone {largest} leaves no ids for wedges, which are numbered after the largest id."
         cure = "Renumber the stones with smaller ids."

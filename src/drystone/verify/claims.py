@@ -128,7 +128,7 @@ class Reference:
         """Compute it from the input stones."""
         book = PoseBook(scale)
         initial = [book.pose(stone, book.initial_angle(stone)) for stone in stones]
-        stock = Stock.of(initial) if initial else Stock(0.0, 0.0, 0.0, 0.0, 0)
+        stock = Stock.of(initial) if initial else Stock(0.0, 0.0, 0.0, 0.0)
         return cls(stones, settings, book, cluster_stones(stones, book, settings.clusters), stock)
 
 

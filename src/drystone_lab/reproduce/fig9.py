@@ -178,7 +178,7 @@ def _treated(moment: Moment, trial: SupportedStone) -> Unstable:
     rotation = stabilise.rotate_to_rest(occupied, trial.pose, workshop.book, settings)
     turned = None if rotation.pose is None else _standing(moment, rotation.pose)
     wedging = replace(settings, method="wedge")
-    first = max([workshop.stock.largest_id, *(wedge.id for wedge in moment.wall.wedges)]) + 1
+    first = max([workshop.stones.stones[-1].id, *(wedge.id for wedge in moment.wall.wedges)]) + 1
     stock = stabilise.WedgeStock(first, workshop.stock.mean_height_px)
     cut = stabilise.make_stable(
         occupied, trial.pose, "left", workshop.book, stock, wedging
