@@ -79,7 +79,7 @@ def test_batches_are_those_of_all_drops_in_order(shortlist_size, choice):
     cautious = step.proposer()
     for count, batch in enumerate(cautious.batches(trials, one_by_one)):
         if not count:
-            known = {trial.key: cautious._dropped[trial.key] for trial in trials}
+            known = {trial.key: cautious.tried[trial.key] for trial in trials}
             assert max(one.limit for one in known.values()) < np.inf
             assert sum(len(p) for one in known.values() for p in one.places) < len(left)
         expected = []
@@ -239,7 +239,7 @@ def test_what_was_asked_before_does_not_matter(rule):
         ]
 
     assert told(warm) == told(step.proposer())
-    assert warm.tried == len(trials) - 1
+    assert len(warm.tried) == len(trials) - 1
 
 
 def test_wedge_limits_are_in_source_px():

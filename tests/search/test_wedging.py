@@ -324,8 +324,6 @@ def test_wedges_on_both_sides_keep_a_stone_from_toppling():
     assert wedged(made, 3) is after  # two wedges are the most under a stone
     made = planner()
     assert wedged(made, 3) is made.build
-    with pytest.raises(ValueError, match="outlines"):
-        wedged(Planner(STONES, SITE, settings=scenes.RASTER), 3)
 
 
 def test_time_that_is_up_leaves_the_wall_as_it_is():

@@ -135,10 +135,7 @@ def assemble_plan(
     site = build.wall.site
     width, height = _source_point(site, *site.extent_px)
     return Plan(
-        version=provenance["version"],
-        method=provenance["method"],
-        seed=provenance["seed"],
-        settings=provenance["settings"],
+        **provenance,
         length_unit="m" if site.px_per_m else "px",
         px_per_m=site.px_per_m,
         working_scale=site.scale,

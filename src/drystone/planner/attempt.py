@@ -82,7 +82,7 @@ class Attempt:
     @property
     def candidates(self) -> int:
         """How many candidates were looked at."""
-        return self._proposer.tried
+        return len(self._proposer.tried)
 
     def standing(self, among: Sequence[int]) -> list[Candidate]:
         """Return the actions of some stones, from all sides, after which the wall stands.

@@ -178,7 +178,3 @@ class Build:
             for action in self.actions
             if action.course_height_px is not None
         }
-
-    def count(self, side: Side) -> int:
-        """How many stones were placed from a side."""
-        return sum(action.side == side for action in self.actions)

@@ -48,7 +48,8 @@ def better_side(
 
     def rank(winner: Candidate) -> tuple[float, int, bool]:
         total = weighted_sum(action_of(winner, settings), settings)
-        return -round(total, TIE_DIGITS), build.count(winner.side), winner.side != "left"
+        used = sum(action.side == winner.side for action in build.actions)
+        return -round(total, TIE_DIGITS), used, winner.side != "left"
 
     return min(level, key=rank)
 

@@ -79,15 +79,12 @@ class Evaluator:
                 proposal.course_height_px,
                 self.stock.narrowest_px,
             )
-        judged = Candidate(
-            proposal, indices, course_height, loaded.model, resistance, solves=trouble(loaded)
-        )
+        judged = proposal, indices, course_height, loaded.model, resistance
         if sturdy is None:
-            return judged
+            return Candidate(*judged, solves=trouble(loaded))
         with self.profile.part("limit analysis"):
             stands = sturdy.grown.resistance.stable and not falls_when_let_go(loaded.model)
-        solves = trouble(loaded, sturdy)
-        return replace(judged, sturdy_model=sturdy.model, sturdy=stands, solves=solves)
+        return Candidate(*judged, sturdy.model, stands, trouble(loaded, sturdy))
 
     def loaded(self, build: Build, blocks: list[Outlined]) -> Loaded:
         """Return what a wall of outlines carries with a stone and its wedges, source px."""

@@ -61,11 +61,8 @@ class Proposer(ABC):
     settings: PlannerSettings
     build: Build
     profile: Profile
-
-    @property
-    @abstractmethod
-    def tried(self) -> int:
-        """How many candidates were looked at."""
+    # By trial, what was found of it; how many there are is how many candidates were looked at.
+    tried: dict[Key, Any] = field(default_factory=dict, init=False)
 
     @abstractmethod
     def proposals(self, trials: Sequence[StoneTrial], apply: Apply) -> Iterator[list[Proposal]]:
@@ -83,7 +80,7 @@ class Proposer(ABC):
     def _cost(self, trial: StoneTrial, stabilised: Group) -> float:
         """Return the weighted craft cost of an action; 0 when no choice depends on it."""
         settings = self.settings
-        if not settings.weighs_craft:
+        if settings.selection_rule != "score" and not settings.placement.compare:
             return 0.0
         with self.profile.part("indices"):
             craft = action_craft(trial.landscape, stabilised, self.workshop.stock, self.rest)
@@ -110,20 +107,14 @@ class RasterProposer(Proposer):
     others only while they promise less than enough of those cost; Algorithm 2 compares all.
     """
 
-    _spotted: dict[Key, Spotted] = field(default_factory=dict, init=False)
     _proposed: dict[Key, Proposal | None] = field(default_factory=dict, init=False)
-
-    @property
-    def tried(self) -> int:
-        """See :class:`Proposer`."""
-        return len(self._spotted)
 
     def proposals(self, trials: Sequence[StoneTrial], apply: Apply) -> Iterator[list[Proposal]]:
         """See :class:`Proposer`."""
-        new = [trial for trial in trials if trial.key not in self._spotted]
+        new = [trial for trial in trials if trial.key not in self.tried]
         found = apply(self.spotted, new)
-        self._spotted.update(zip([trial.key for trial in new], found, strict=True))
-        mine = [self._spotted[trial.key] for trial in trials]
+        self.tried.update(zip([trial.key for trial in new], found, strict=True))
+        mine = [self.tried[trial.key] for trial in trials]
         if self.settings.selection_rule == "score":
             yield from self._by_promise(mine, apply)
         else:

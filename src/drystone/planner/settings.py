@@ -144,11 +144,6 @@ class PlannerSettings(Ranged):
         """True when a policy chooses (:mod:`drystone.selection.policies`), not a rule of ours."""
         return self.selection_rule not in RULES
 
-    @property
-    def weighs_craft(self) -> bool:
-        """True when a choice depends on craft costs (:mod:`drystone.selection.scored`)."""
-        return self.selection_rule == "score" or self.placement.compare
-
     def as_dict(self) -> dict[str, Any]:
         """Return nested dictionaries, as TOML and JSON write them.
 

@@ -9,16 +9,14 @@ from itertools import chain, islice
 import numpy as np
 
 from drystone.kernels.drops import DropTerms, Wanted, drops
-from drystone.kernels.polygons import Points
 from drystone.kernels.profiles import OVER, HeightProfile, StoneProfile, in_a_row
 from drystone.model.placement import Side
-from drystone.model.wall import Group
 from drystone.planner.build import Proposal
 from drystone.planner.dropping import Drop, Dropped, drop_terms, in_order, shortlist, wedge_limits
 from drystone.planner.proposing import Apply, Key, Proposer, StoneTrial, one_by_one
 from drystone.planner.views import SideView
 from drystone.settle.placing import settled_in
-from drystone.settle.rest import Repose, come_to_rest
+from drystone.settle.rest import come_to_rest
 from drystone.settle.wedge import WedgeLimits, wedged
 
 CHUNK = 256
@@ -39,13 +37,7 @@ class ExactProposer(Proposer):
     """
 
     _views: dict[Side, SideView] = field(default_factory=dict, init=False)
-    _dropped: dict[Key, Dropped] = field(default_factory=dict, init=False)
     _settled: dict[tuple[Key, int], Proposal | None] = field(default_factory=dict, init=False)
-
-    @property
-    def tried(self) -> int:
-        """See :class:`drystone.planner.proposing.Proposer`."""
-        return len(self._dropped)
 
     def proposals(self, trials: Sequence[StoneTrial], apply: Apply) -> Iterator[list[Proposal]]:
         """See :class:`drystone.planner.proposing.Proposer`."""
@@ -64,7 +56,7 @@ class ExactProposer(Proposer):
         """Return the best places of each trial, the cheapest first."""
         self._drop(trials, apply, math.inf)
         book = self.workshop.outlines
-        return [tuple(in_order([self._dropped[trial.key]], book)) for trial in trials]
+        return [tuple(in_order([self.tried[trial.key]], book)) for trial in trials]
 
     def batches(self, trials: Sequence[StoneTrial], apply: Apply) -> Iterator[list[Drop]]:
         """List the cheapest drops of all trials, then the next ones, and so on."""
@@ -72,10 +64,10 @@ class ExactProposer(Proposer):
         settings, needed = self.settings.settle, -math.inf
         while True:
             self._drop(trials, apply, needed)
-            known = in_order([self._dropped[t.key] for t in trials], self.workshop.outlines)
+            known = in_order([self.tried[t.key] for t in trials], self.workshop.outlines)
             batch = shortlist((drop for drop in known if drop.key not in given), settings)
             needed = batch[-1].cost if len(batch) == settings.shortlist else math.inf
-            if any(self._dropped[trial.key].limit < needed for trial in trials):
+            if any(self.tried[trial.key].limit < needed for trial in trials):
                 continue  # cheaper ones than some of these may be missing
             if not batch:
                 return
@@ -103,7 +95,7 @@ class ExactProposer(Proposer):
 
         At first, when none is needed yet, what may be among the cheapest is looked for; later all.
         """
-        known = self._dropped
+        known = self.tried
         lacking = [t for t in trials if t.key not in known or known[t.key].limit < needed]
         cheapest = self.settings.settle.shortlist if needed == -math.inf else 0
         chunks = []
@@ -158,8 +150,14 @@ class ExactProposer(Proposer):
             if repose is None and method in ("both", "wedge"):  # rotation first (§3.7)
                 found = wedged(hung.turned, scene, start, settings, self._limits)
                 repose, wedge = found or (None, None)
-            stabilised = None if repose is None else self._stabilised(drop, repose, wedge)
-        if stabilised is None:
+            highest = self.build.wall.site.extent_px[1] + settings.beyond_px
+            if repose is None or repose.settled.corners[:, 1].max() > highest:
+                return None
+            number = self.workshop.next_wedge(self.build)
+            stabilised = settled_in(
+                self.build.wall, posed.stone, side, repose, wedge, wedge_id=number
+            )
+        if stabilised is None:  # it fills no pixel
             return None
         cost = self._cost(drop.trial, stabilised)
         return Proposal(stabilised, posed.angle_deg, cost=cost, spot=drop.spot)
@@ -181,12 +179,3 @@ class ExactProposer(Proposer):
         ]
         clear = 2.0 * self.settings.settle.clearance_px
         return (max(beside) + clear - stone.left, y) if beside else start
-
-    def _stabilised(self, drop: Drop, repose: Repose, wedge: Points | None) -> Group | None:
-        """Return a stone that rests, with the pixels that it fills; None when it is too high."""
-        wall, stone, side = self.build.wall, drop.trial.poses[0].stone, drop.trial.landscape.side
-        beyond_px = self.settings.settle.beyond_px
-        if repose.settled.corners[:, 1].max() > wall.site.extent_px[1] + beyond_px:
-            return None
-        number = self.workshop.next_wedge(self.build)
-        return settled_in(wall, stone, side, repose, wedge, wedge_id=number)

@@ -194,14 +194,14 @@ def without(build: Build, gone: frozenset[int], yard: Yard) -> Replayed:
 
 
 def wedged(found: FoundWall, yard: Yard) -> FoundWall:
-    """Put small wedges into the gaps of a wall of outlines, where that makes it better.
+    """Put small wedges into the gaps of a wall, where that makes it better.
 
     The wall is judged by both flow rules.
     """
     found = found.judged(yard)
     wedges = yard.settings.search.wedges
     may = yard.settings.stabilise.method in ("both", "wedge")
-    if found.build.wall.outlines is None or not (wedges and may and found.build.actions):
+    if not (wedges and may and found.build.actions):
         return found
     build, solves = wedged_up(found.build, yard, wedges)
     found = replace(found, solves=found.solves + solves)

@@ -189,7 +189,17 @@ def poses_of(corners: Collection[Points], areas_px: NDArray[np.float64], column_
         ),
         peaks=np.array([peaks for peaks, _ in parts], np.int32),
         part_at=np.array([at for _, at in parts], np.int32),
-        faces=np.array([_faces_of(profile, unit_px) for profile in above], np.int32),
+        # How far the left and right faces are inside the box in the mean, by profiles of rows.
+        faces=np.array(
+            [
+                (
+                    round((float(p.bottoms.mean()) - p.bottom) / unit_px),
+                    round((p.top - float(p.tops.mean())) / unit_px),
+                )
+                for p in above
+            ],
+            np.int32,
+        ),
         area=np.rint(areas_px / (column_px * unit_px)).astype(np.int64),
     )
 
@@ -214,16 +224,6 @@ def _parts_of(profile: StoneProfile, unit_px: float) -> tuple[list[int], list[in
         peaks.append(round((float(part.max()) - profile.bottom) / unit_px))
         at.append((start + max(end, start + 1)) // 2)
     return peaks, at
-
-
-def _faces_of(profile: StoneProfile, unit_px: float) -> tuple[int, int]:
-    """Return how far the left and right faces are inside the box in the mean.
-
-    The profile is one of rows: its bottoms are the left face.
-    """
-    left = float(profile.bottoms.mean()) - profile.bottom
-    right = profile.top - float(profile.tops.mean())
-    return round(left / unit_px), round(right / unit_px)
 
 
 def ground_of(

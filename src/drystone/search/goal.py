@@ -168,6 +168,11 @@ class RehearsalFalls(NamedTuple):
     first: Counter[int]  # in how many runs which stone falls first, in the order of placement
     begins: Counter[int]  # in how many falls begin when which stone is laid
 
+    @classmethod
+    def none(cls) -> "RehearsalFalls":
+        """Say that nothing falls."""
+        return cls(0.0, Counter(), Counter())
+
 
 @dataclass(frozen=True)
 class Courses:
@@ -188,7 +193,8 @@ class FoundWall:
     merit: float
     solves: Solves = field(default_factory=Solves)  # trouble with it
     courses: Courses | None = None  # None for a wall that was not planned before
-    falls: RehearsalFalls | None = None  # in its rehearsals, once it was judged
+    # in its rehearsals, once it was judged
+    falls: RehearsalFalls = field(default_factory=RehearsalFalls.none)
     # Stones that move when it fails in its weaker direction, the fastest first, once it was judged.
     movers: tuple[int, ...] = ()
 
@@ -230,7 +236,7 @@ class FoundWall:
         most = self.merit + (goal.fallen * figures.fallen if figures and again else 0.0)
         if most <= least:
             return replace(self, merit=-math.inf)
-        if figures is None or self.build.wall.outlines is None:
+        if figures is None:
             return self
         known = figures.F_LR_coulomb
         if known is not None and not again:
@@ -238,10 +244,10 @@ class FoundWall:
         falls = self.falls
         if goal.fallen:
             most = (most - least) / goal.fallen
-            falls = (rehearsals or Rehearsals(yard, RUNS)).falls(self.build, most)
-            if falls is None:
+            found_falls = (rehearsals or Rehearsals(yard, RUNS)).falls(self.build, most)
+            if found_falls is None:
                 return replace(self, merit=-math.inf)
-            figures = replace(figures, fallen=falls.share)
+            falls, figures = found_falls, replace(figures, fallen=found_falls.share)
         carried, movers = figures.F_LR, self.movers
         # A thorough search begins as the quick one, which may find a load that is low enough.
         searches: list[NonassociativeSettings] = list(dict.fromkeys((QUICK, flow or QUICK)))
@@ -273,13 +279,11 @@ def is_high(wall: Wall) -> bool:
 
 
 def stays_at_every_step(build: Build, until: Deadline = NEVER) -> bool:
-    """Return whether a wall on outlines stays as it is when all of it is let go after each step.
+    """Return whether a wall stays as it is when all of it is let go after each step.
 
     Forces that would hold it may exist that do not arise (DESIGN 4.8).  For the newest stone alone
     that is asked whenever a stone is placed; for all, which takes longer, only of the best walls.
     """
-    if build.wall.outlines is None:
-        return True
     models = (action.model for action in build.actions)
     return all(fall_of(m, assemble(m), ROUNDS, until.look) is None for m in models)
 
@@ -320,7 +324,7 @@ class Rehearsals:
         """
         blocks, groups = groups_of(build.wall), build.wall.groups
         if not blocks:
-            return RehearsalFalls(0.0, Counter(), Counter())
+            return RehearsalFalls.none()
         settings = self._yard.settings
         errors = self._errors or BuilderErrors.of_precision(HAND, mean_size(blocks))
         pairs = zip(groups, self._first, strict=False)

@@ -22,7 +22,6 @@ from drystone.search.goal import (
     LAST_RUNS,
     THOROUGH,
     FoundWall,
-    RehearsalFalls,
     Rehearsals,
     is_high,
     stays_at_every_step,
@@ -78,12 +77,11 @@ def repairs(
     """
     yard = Yard.of(planner, until)
     job = Job.of(yard, planner.seed)
-    (first, begins), misses = _weak(best), 0
+    (_, first, begins), misses = best.falls, 0
     try:
         for turn in range(turns):
             now = best.judged(yard, rehearsals=Rehearsals(yard, LOOK_RUNS, 2 + 2 * turn))
-            more, later = _weak(now)
-            first, begins = first + more, begins + later
+            first, begins = first + now.falls.first, begins + now.falls.begins
             asked = job, pickle.dumps(PackedWall.of(best)), turn
             changes = _changes(best, first, begins, misses)
             tasks = [(*asked, number, change) for number, change in enumerate(changes)]
@@ -94,19 +92,13 @@ def repairs(
                 found |= {one.groups: (one, movers) for one, movers in walls}
             better = _surely_better(best, list(found.values()), yard, 3 + 2 * turn)
             if better is not None:
-                best, (first, begins), misses = better, _weak(better), -1
+                best, (_, first, begins), misses = better, better.falls, -1
             yield best
             misses += 1
             if misses == MISSES:
                 return
     finally:
         _begun.cache_clear()
-
-
-def _weak(wall: FoundWall) -> tuple[Counter[int], Counter[int]]:
-    """Count which stones fall first in rehearsals, and which are laid when falls begin."""
-    falls = wall.falls or RehearsalFalls(0.0, Counter(), Counter())
-    return falls.first, falls.begins
 
 
 def _changes(

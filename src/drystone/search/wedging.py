@@ -95,8 +95,6 @@ def wedged_up(build: Build, yard: Yard, most: int) -> tuple[Build, Solves]:
     every step, in both models.  The wall has all its states then; it is the same one when nothing
     changes, or when its own steps cannot be taken again.  At most so many wedges are added.
     """
-    if build.wall.outlines is None:
-        raise ValueError("only walls of outlines are wedged up")
     steps = _Steps(yard, build.course_heights_px())
     begun: Build | None = build
     if len(build.states()) <= len(build.actions):  # it does not know its states

@@ -99,30 +99,28 @@ def _improved(
 ) -> SearchEnd:
     """Look for better walls; see :func:`run_to_end`."""
     progress: Progress | None = None
-    lost = interrupted = False
+    lost = False
     try:
-        begun = start if isinstance(start, SearchState) else FoundWall.of(planner)
-        yard = Yard.of(planner, until)
-        with planner.profile.part("search"):
-            for progress in searching(begun, yard, planner.seed, executor):
-                planner.solves = progress.solves
-                # First, so that who is interrupted in a callback goes on from this wall.
-                told(progress)
-                planner.callbacks.on_walls(_incumbent(progress.walls, progress.best))
-    except BrokenProcessPool:
-        lost = True
-    except KeyboardInterrupt:
-        interrupted = True  # every wall of a search is complete
-    with suppress(KeyboardInterrupt):
-        if not interrupted:
-            if isinstance(start, Stopped) and (progress is None or progress.walls == 1):
-                return SearchEnd(planner, start, 1, progress.kept if progress else (), lost)
-            assert progress is not None  # noqa: S101 - what a search goes on from comes first
-            grace = Deadline.after(grace_s, until.clock)
-            return _ended(planner, progress, grace, executor, lost=lost)
-    with suppress(KeyboardInterrupt), held():
-        ended = cut_off(planner, progress)
-    return ended
+        try:
+            begun = start if isinstance(start, SearchState) else FoundWall.of(planner)
+            yard = Yard.of(planner, until)
+            with planner.profile.part("search"):
+                for progress in searching(begun, yard, planner.seed, executor):
+                    planner.solves = progress.solves
+                    # First, so that who is interrupted in a callback goes on from this wall.
+                    told(progress)
+                    planner.callbacks.on_walls(_incumbent(progress.walls, progress.best))
+        except BrokenProcessPool:
+            lost = True
+        if isinstance(start, Stopped) and (progress is None or progress.walls == 1):
+            return SearchEnd(planner, start, 1, progress.kept if progress else (), lost)
+        assert progress is not None  # noqa: S101 - what a search goes on from comes first
+        grace = Deadline.after(grace_s, until.clock)
+        return _ended(planner, progress, grace, executor, lost=lost)
+    except KeyboardInterrupt:  # every wall of a search is complete
+        with suppress(KeyboardInterrupt), held():
+            ended = cut_off(planner, progress)
+        return ended
 
 
 def cut_off(planner: Planner, progress: Progress | None) -> SearchEnd:
@@ -182,16 +180,8 @@ def _built(planner: Planner, until: Deadline, told: Callable[[Progress | None], 
 
 def _incumbent(walls: int, best: PackedWall, turn: int = 0) -> Incumbent:
     figures = best.figures or WallFigures(0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-    return Incumbent(
-        walls,
-        figures.stones,
-        best.merit,
-        figures.F_SF,
-        figures.F_LR,
-        figures.F_AV,
-        figures.F_AH,
-        turn,
-    )
+    told = {name: getattr(figures, name) for name in ("stones", "F_SF", "F_LR", "F_AV", "F_AH")}
+    return Incumbent(walls=walls, merit=best.merit, repairs=turn, **told)
 
 
 def surest(
