@@ -11,9 +11,8 @@ from drystone.search import plan_result
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.result import LimitStatus
 from drystone.verify import claims
-from drystone.verify.check import check_plan
+from drystone.verify.check import PrefixAlpha, check_plan
 from drystone.verify.replay import PENETRATION_PX
-from drystone.verify.report import PrefixAlpha
 from tests.planner.scenes import read_again
 from tests.verify.exact_examples import GAP_PX, block_model, exact_example, hanging_example
 from tests.verify.examples import L_STONE, SLAB, WEDGE, example

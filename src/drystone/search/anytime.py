@@ -64,9 +64,7 @@ def searching(
         with suppress(TimeIsUp):
             start = start.judged(yard)
         first = Reached.of(PackedWall.of(start))
-        yield Progress(first.walls, first.best, first.solves, first.kept)
-        if settings.search.budget == 1:
-            return
+        yield Progress(**vars(first))
         # Its wedges are told of with the next wall: a search that ends before that is repeated by
         # the budget 1, which is the wall without them.
         try:
@@ -155,7 +153,7 @@ class _Round:
     def after(self, reached: Reached, state: SearchState | None) -> Progress:
         """Say how far the search is, from what this round has come to."""
         whole = self._in_all(reached)
-        return Progress(whole.walls, whole.best, whole.solves, whole.kept, state)
+        return Progress(**vars(whole), state=state)
 
     def _in_all(self, reached: Reached) -> Reached:
         return reached if self.before is None else self.before + reached

@@ -24,7 +24,6 @@ from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import GROUND, Direction, RigidBlockModel
 from drystone.statics.result import LateralResistance, LimitStatus
 from drystone.verify.replay import Replay, Stage
-from drystone.verify.report import contradicted
 
 UNKNOWN = "the solver gave up, and it is not known whether the wall stands"
 
@@ -63,6 +62,14 @@ def differs(claimed: float | None, found: float | None, tolerance: float) -> boo
     if claimed is None or found is None:
         return claimed is not found
     return not abs(claimed - found) <= tolerance * max(1.0, abs(found))
+
+
+def contradicted(name: str, claimed: float | None, found: float | None) -> str:
+    """Say that a plan claims another value than was found; None is written null, as in JSON."""
+    said = "null" if claimed is None else claimed
+    if found is None:
+        return f"{name} is {said} by the plan, but there is no such value."
+    return f"{name} is {said} by the plan, {found} was found."
 
 
 def _not_sturdy(stage: Stage, settings: PlannerSettings) -> list[Problem]:

@@ -19,9 +19,9 @@ from drystone.physics.building import BlockMove, BuildUp
 from drystone.physics.scatter import TiltResult
 from drystone.search.closed_loop import ClosedRun
 from drystone.search.rehearsal import Groups, RehearsalRun
+from drystone.verify.check import CheckReport
 from drystone.verify.claims import check_engine
 from drystone.verify.outlines import PolygonGroup
-from drystone.verify.report import CheckReport
 
 PICTURE = "check.png"  # beside a plan of which something fails
 NOT_BUILT = "not built there, as a step of the plan places nothing"
