@@ -5,13 +5,10 @@ from dataclasses import dataclass, field
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from drystone.craft.masonry import Masonry
 from drystone.errors import UsageError
-
-Line = NDArray[np.float64]
-"""(n, 2) points of the wall frame."""
+from drystone.kernels.polygons import Points
 
 Verdict = Literal["good", "fair", "broken", "not judged"]
 
@@ -34,7 +31,7 @@ class Case:
     stones: tuple[int, ...]
     value: float  # how bad it is, in the unit of `words`
     words: str  # what is wrong, after the names of the stones
-    lines: tuple[Line, ...] = ()  # (n, 2), joints, edges or slopes to draw
+    lines: tuple[Points, ...] = ()  # (n, 2), joints, edges or slopes to draw
     # How many of the stones, the first ones, do not keep the rule; 0 when it is a joint between
     # them that does not.
     at_fault: int = 1

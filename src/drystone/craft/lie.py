@@ -7,8 +7,9 @@ import numpy as np
 import shapely
 from scipy import ndimage
 
-from drystone.craft.finding import Case, Evidence, Line, worst_first
+from drystone.craft.finding import Case, Evidence, worst_first
 from drystone.craft.masonry import Masonry
+from drystone.kernels.polygons import Points
 from drystone.kernels.profiles import Floats
 from drystone.model.overlap import common_parts
 
@@ -50,7 +51,7 @@ def on_end(masonry: Masonry) -> Evidence:
     return Evidence(number, worst_first(cases), {"stones with a longer side": float(longer)})
 
 
-def _smallest_rectangle(loop: Line) -> tuple[Line, Line, Line]:
+def _smallest_rectangle(loop: Points) -> tuple[Points, Points, Points]:
     """Return the middle of the smallest rectangle around corners, (n, 2), and two of its sides.
 
     Of equally small ones, as a triangle has, it is the least elongated; that of GEOS goes by
@@ -105,7 +106,7 @@ class Edge:
     side: Literal["lower", "upper"]
     slope: float  # rise to the right over run
     width: float  # of the part that was fitted
-    line: Line  # (2, 2), its ends
+    line: Points  # (2, 2), its ends
 
     @property
     def angle_deg(self) -> float:
@@ -210,7 +211,7 @@ def level_top(masonry: Masonry) -> Evidence:
     return Evidence(round(float(np.abs(tops - tops.mean()).mean()) / height, 9), worst_first(cases))
 
 
-def without_slots(profile: Line, widest: float) -> Line:
+def without_slots(profile: Points, widest: float) -> Points:
     """Fill the slots of a profile, (n,), that are no wider than a joint to their lower brink.
 
     The width is in steps of the profile.

@@ -6,8 +6,9 @@ from itertools import pairwise
 
 import numpy as np
 
-from drystone.craft.finding import Case, Evidence, Limit, Line, worst_first
+from drystone.craft.finding import Case, Evidence, Limit, worst_first
 from drystone.craft.masonry import Masonry
+from drystone.kernels.polygons import Points
 from drystone.model.wedge_shape import WedgeRule, WedgeSettings, WedgeShape, open_sides
 from drystone.statics.joints import is_head_joint, loose_blocks
 from drystone.statics.lp.highs import HighsSession
@@ -80,7 +81,7 @@ def _loads(masonry: Masonry, wedges: frozenset[int]) -> tuple[Mapping[int, float
     return None, f"{UNKNOWN}: {fallen}"
 
 
-def _frame(masonry: Masonry, wedge: int) -> tuple[Line, ...]:
+def _frame(masonry: Masonry, wedge: int) -> tuple[Points, ...]:
     """Return a frame around a wedge, which may be too small to be seen."""
     room = 0.12 * masonry.mean_height
     x0, y0, x1, y1 = masonry.boxes[wedge]

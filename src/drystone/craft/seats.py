@@ -5,10 +5,11 @@ All is read off the columns of the wall: what is next below each stone, and how 
 
 import numpy as np
 
-from drystone.craft.finding import Case, Evidence, Limit, Line, worst_first
+from drystone.craft.finding import Case, Evidence, Limit, worst_first
 from drystone.craft.joints import StoneSides
 from drystone.craft.masonry import Masonry
 from drystone.craft.pins import resting_on
+from drystone.kernels.polygons import Points
 from drystone.kernels.profiles import Floats
 
 
@@ -104,7 +105,7 @@ def voids(masonry: Masonry) -> Evidence:
             share = int(count) * under.spacing / width
             if share > masonry.settings.void + 1e-9:
                 cells = slice(0, count) if side == "left" else slice(-int(count), None)
-                line: Line = np.column_stack([under.x[cells], under.low[cells]])[[0, -1]]
+                line: Points = np.column_stack([under.x[cells], under.low[cells]])[[0, -1]]
                 words = f"nothing under its {side} corner, {share:.2f} of its width"
                 words = words if len(filled) else "hangs, with nothing under it"
                 cases.append(Case((stone,), round(share, 6), words, (line,)))

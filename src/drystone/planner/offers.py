@@ -6,11 +6,12 @@ import numpy as np
 
 from drystone.kernels.polygons import Points, turn
 from drystone.kernels.raster import wrap_deg
+from drystone.model.plan import Point
 from drystone.model.site import Site
 from drystone.model.wall import Group, Wall, outlined
 from drystone.physics.building import stays
 from drystone.planner.build import Candidate
-from drystone.selection.policy import Offer, Point
+from drystone.selection.policy import Offer
 from drystone.statics.model import GROUND, Interface
 
 UPWARD = 0.1

@@ -6,6 +6,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.random import Generator
 
+from drystone.kernels.polygons import Points
 from drystone.metrics.frame import frame_wall
 from drystone.metrics.paths import joint_mask, vertical_paths
 from drystone.model.builder import HAND, BuilderErrors
@@ -15,7 +16,6 @@ from drystone.search.rehearsal import groups_of, mean_size, rehearse
 from drystone.statics.limit import lateral_resistance
 
 Ids = frozenset[int]
-Points = np.ndarray
 Ruin = Callable[[Build, int, Generator], Ids]
 
 BEARS = 0.2

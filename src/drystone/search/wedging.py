@@ -18,6 +18,7 @@ from drystone.planner.build import Build, Solves
 from drystone.planner.deadline import Deadline
 from drystone.search.wedge_draft import MOST_UNDER_ONE, Motion, WedgeDraft, WedgePlace, wedge_places
 from drystone.search.yard import Yard
+from drystone.settle.placing import NOTHING
 from drystone.statics.model import RigidBlockModel
 
 LEAST = 0.003
@@ -31,8 +32,6 @@ ANALYSED = 24
 
 DRAFTS = 4
 """Most drafts of a wall; each but the last had a wedge with which the steps cannot be taken."""
-
-NOTHING = np.zeros((0, 0), bool)
 
 Barred = frozenset[tuple[int, bytes]]
 """Steps and outlines of wedges with which the wall does not stand after every step."""

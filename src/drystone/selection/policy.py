@@ -15,8 +15,7 @@ import numpy as np
 from drystone.errors import UsageError
 from drystone.indices import Indices
 from drystone.model.placement import Side
-
-Point = tuple[float, float]
+from drystone.model.plan import Point
 
 
 @dataclass(frozen=True, kw_only=True)

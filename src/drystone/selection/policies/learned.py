@@ -10,13 +10,11 @@ from importlib import resources
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from drystone.errors import UsageError
+from drystone.kernels.profiles import Floats
 from drystone.selection.policies.choices import Largest, centre_distance_px, slope_rad
 from drystone.selection.policy import Offer
-
-Floats = NDArray[np.float64]
 
 SCHEMA = "drystone-values/1"
 """Of the file of weights; another number when the features or their meaning change."""
