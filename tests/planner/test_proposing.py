@@ -14,12 +14,13 @@ from drystone.kernels.polygons import Polygons, no_polygons
 from drystone.kernels.profiles import StoneProfile, bare, raised
 from drystone.model.landscape import Landscape
 from drystone.planner.attempt import Attempt
-from drystone.planner.dropping import Drop, Dropped, _rank, in_order, wedge_limits
+from drystone.planner.dropping import Drop, Dropped, _rank, in_order
 from drystone.planner.profile import Profile
 from drystone.planner.proposing import SPARE, RasterProposer, StoneTrial, one_by_one
 from drystone.planner.settling import ExactProposer
 from drystone.planner.stock import Stock
 from drystone.planner.views import SideView, Views
+from drystone.planner.workshop import wedge_limits
 from drystone.settle.rest import SettlingScene
 from tests.planner import scenes
 from tests.polygons import box, random_polygon

@@ -280,7 +280,7 @@ class Drop:
         self.stone = Turned.of(outline, 0.0, side, stone.area_px**0.5)
         self.hung = hanging(self.stone.corners, 1.0)
         self.unit_px = one.workshop.stock.mean_height_px
-        self.hand = Hand(laying, yard.settings.settle, yard.limits, "both")
+        self.hand = Hand(laying, yard.settings.settle, yard.workshop.limits, "both")
 
     def lifts(self):
         """Where the stone first touches, column by column."""

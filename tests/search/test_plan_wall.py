@@ -185,7 +185,7 @@ def test_wedges_that_are_none_by_the_new_settings_are_left_out():
         )
         planner = Planner(scenes.few_stones(), site, settings=settings)
         begin_with(planner, old.build.wall, {})
-        limits = Yard.of(planner).limits
+        limits = planner.workshop.limits
         wedges = [w.corners for w in planner.build.wall.wedges if w.corners is not None]
         assert all(limits.allows(WedgeShape.of(corners)) for corners in wedges)
         kept.add(len(wedges))

@@ -82,7 +82,7 @@ OPEN_WALLS = pytest.mark.parametrize("wall", range(2))
 def drafted(wall):
     """A finished wall, its draft, and the number of its next wedge."""
     made = small_walls()[wall][1]
-    draft = WedgeDraft.of(made.build, Yard.of(made).limits)
+    draft = WedgeDraft.of(made.build, made.workshop.limits)
     return made, draft, made.workshop.next_wedge(made.build)
 
 
@@ -220,11 +220,11 @@ def test_what_the_mechanism_does_not_violate_does_not_help():
         centroids = {block.id: block.centroid for block in model.blocks}
         motion = Motion.of(dict(told), centroids, model.mu)
         assert motion.resisted_by([]).tolist() == []
-        lax = replace(Yard.of(made).limits, least_thickness=0.1, greatest_height=12.0, mu=3.0)
+        lax = replace(made.workshop.limits, least_thickness=0.1, greatest_height=12.0, mu=3.0)
         places = all_places(made.build, lax)
         naive = NaiveMotion(model, one.mechanism)
         for place, rate in zip(places, motion.resisted_by(places).tolist(), strict=True):
-            new, near_px = [(999, place.corners)], Yard.of(made).limits.contact_px
+            new, near_px = [(999, place.corners)], made.workshop.limits.contact_px
             model = model_with_outlines(made.build.model, new, wall.exact, near_px)
             assert rate == pytest.approx(naive.resisted_by(model.added.interfaces), abs=1e-9)
             violated = rate > 1e-9
@@ -344,7 +344,7 @@ def test_a_wedge_with_nothing_beside_it_is_none():
         made = planner()
         steps = [*beside, stone]
         made.build, _, _ = replayed(made.build, steps, {}, made.workshop, made.settings)
-        places = all_places(made.build, Yard.of(made).limits)
+        places = all_places(made.build, made.workshop.limits)
         assert {bool(place.corners[0, 0] > 40.0) for place in places} == sides
         assert sides or wedged(made, 2) is made.build
 
@@ -391,7 +391,7 @@ def test_wedges_that_do_not_matter_are_dropped(places, wedges, stay):
 def test_wedges_keep_clear_of_what_comes_later_and_do_not_rest_on_it():
     made = built((12, 30.0, 0.01), (3, 44.9, 0.01), wedges={12: [box(38.1, 0.01, 39.6, 5.0)]})
     places = all_places(
-        made.build, replace(Yard.of(made).limits, greatest_height=20.0, greatest_area=99.0)
+        made.build, replace(made.workshop.limits, greatest_height=20.0, greatest_area=99.0)
     )
     under = [p for p in places if p.step == 2]
     later = shapely.Polygon(made.build.wall.groups[3].placement.settled.corners)
@@ -432,7 +432,7 @@ def test_the_first_wedge_is_the_best_one(wall):
     """Of all with which all steps can be taken."""
     _, made = small_walls()[wall]
     gained = [value(made.build)]
-    for place in all_places(made.build, Yard.of(made).limits):
+    for place in all_places(made.build, made.workshop.limits):
         group, *rest = made.build.wall.groups[place.step :]
         wedge = Wedge(0, group.placement.stone_id, NOTHING, 0, 0, place.corners)
         with_it = Group(group.placement, (*group.wedges, wedge))

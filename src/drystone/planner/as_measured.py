@@ -17,7 +17,6 @@ from drystone.model.pose import PosedStone
 from drystone.model.stone import Stone
 from drystone.model.wall import Group
 from drystone.planner.build import Build, Candidate
-from drystone.planner.dropping import wedge_limits
 from drystone.planner.evaluate import Evaluator
 from drystone.planner.measured import MeasuredPlace
 from drystone.planner.replay import judged, replayed
@@ -228,11 +227,10 @@ def _on_outlines(
     wall, settle = build.wall, settings.settle
     scene = SettlingScene.of(wall.exact.polygons, wall.site.extent_px[0], one.side, settings.mu)
     turned = workshop.outlines.hung(one.stone, one.place.angle_deg, one.side).turned
-    limits = wedge_limits(settings, workshop.stock, wall.site)
     starts = _starts(turned, one.place, scene, settle.clearance_px)
 
     def held(starts: Iterable[Start]) -> list[Rested]:
-        found = (wedged(turned, scene, start, settle, limits) for start in starts)
+        found = (wedged(turned, scene, start, settle, workshop.limits) for start in starts)
         return [one for one in found if one is not None]
 
     def alone(way: Callable[..., Repose | None], starts: Iterable[Start]) -> list[Rested]:

@@ -2,7 +2,7 @@
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from itertools import groupby
 from operator import attrgetter
 
@@ -11,13 +11,11 @@ import numpy as np
 from drystone.kernels.drops import DropTerms
 from drystone.kernels.profiles import Floats
 from drystone.model.site import Site
-from drystone.model.wedge_shape import WedgeRule
 from drystone.planner.proposing import Key, StoneTrial
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.stock import Rest, Stock
 from drystone.settle.book import OutlineBook
 from drystone.settle.settings import SettleSettings
-from drystone.settle.wedge import WedgeLimits
 
 SLACK = 0.15
 """A stone may stand out over the wall's height by so many mean stone sizes where it is dropped."""
@@ -117,20 +115,3 @@ def shortlist(drops: Iterable[Drop], settings: SettleSettings) -> list[Drop]:
             if len(taken) == settings.shortlist:
                 break
     return taken
-
-
-def wedge_limits(settings: PlannerSettings, stock: Stock, site: Site) -> WedgeLimits:
-    """Return what wedges may be, in source px; the stock is in working px."""
-    settle, size_px = settings.settle, stock.median_area_px**0.5 / site.scale
-    rule = WedgeRule.of(settings.wedge, settings.mu, size_px, site.px_per_m)
-    return WedgeLimits(
-        **asdict(rule),
-        margin=settings.stabilise.margin,
-        clearance_px=settle.clearance_px,
-        contact_px=0.5 * settle.contact_px,
-        setback=settle.setback,
-        # Where there is less room than the shortest side of a stone, none comes.
-        room_px=min((shorter for shorter, _ in stock.sides.values()), default=0) / site.scale,
-        rest=settle.margin,
-        steep=settle.steep,
-    )

@@ -9,7 +9,6 @@ from drystone.model.landscape import Landscape
 from drystone.model.wall import Group, Wall, outlined
 from drystone.planner.build import Build, Candidate, Proposal, Solves
 from drystone.planner.deadline import NEVER, Deadline
-from drystone.planner.dropping import wedge_limits
 from drystone.planner.evaluate import Evaluator
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.workshop import Workshop
@@ -47,13 +46,12 @@ def replayed(
     `until` is looked at before every step (TimeIsUp).
     """
     evaluator = Evaluator(settings, workshop.stock, until=until)
-    limits = wedge_limits(settings, workshop.stock, workshop.site)
     build = start
     left_out: list[int] = []
     solves = Solves()
     for group in groups:
         stood, fitted = build, None
-        if not (strict and left_out) and _has_room(build.wall, group, limits):
+        if not (strict and left_out) and _has_room(build.wall, group, workshop.limits):
             number = workshop.next_wedge(build)
             if build.wall.outlines is not None:
                 fitted = settled_again(build.wall, group, number)

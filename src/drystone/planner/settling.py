@@ -12,12 +12,12 @@ from drystone.kernels.drops import DropTerms, Wanted, drops
 from drystone.kernels.profiles import OVER, HeightProfile, StoneProfile, in_a_row
 from drystone.model.placement import Side
 from drystone.planner.build import Proposal
-from drystone.planner.dropping import Drop, Dropped, drop_terms, in_order, shortlist, wedge_limits
+from drystone.planner.dropping import Drop, Dropped, drop_terms, in_order, shortlist
 from drystone.planner.proposing import Apply, Key, Proposer, StoneTrial, one_by_one
 from drystone.planner.views import SideView
 from drystone.settle.placing import settled_in
 from drystone.settle.rest import come_to_rest
-from drystone.settle.wedge import WedgeLimits, wedged
+from drystone.settle.wedge import wedged
 
 CHUNK = 256
 """So many trials of one side are dropped together."""
@@ -82,10 +82,6 @@ class ExactProposer(Proposer):
         return self._views[side]
 
     @cached_property
-    def _limits(self) -> WedgeLimits:
-        return wedge_limits(self.settings, self.workshop.stock, self.build.wall.site)
-
-    @cached_property
     def _terms(self) -> DropTerms:
         site, stock = self.build.wall.site, self.workshop.stock
         return drop_terms(site, stock, self.rest, self.settings)
@@ -148,7 +144,7 @@ class ExactProposer(Proposer):
             turns, wedge = method in ("both", "rotation"), None
             repose = come_to_rest(hung.turned, scene, start, settings, turns=turns)
             if repose is None and method in ("both", "wedge"):  # rotation first (§3.7)
-                found = wedged(hung.turned, scene, start, settings, self._limits)
+                found = wedged(hung.turned, scene, start, settings, self.workshop.limits)
                 repose, wedge = found or (None, None)
             highest = self.build.wall.site.extent_px[1] + settings.beyond_px
             if repose is None or repose.settled.corners[:, 1].max() > highest:

@@ -1,6 +1,6 @@
 """Everything that is prepared once for a stone set and a site (Algorithm 1, line 2)."""
 
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from statistics import fmean
 
 from drystone.clusters import cluster_stones
@@ -9,6 +9,7 @@ from drystone.kernels.raster import wrap_deg
 from drystone.model.pose import PosedStone
 from drystone.model.site import Site
 from drystone.model.stone import StoneSet
+from drystone.model.wedge_shape import WedgeRule
 from drystone.planner.build import Build
 from drystone.planner.craft import PoseCosts
 from drystone.planner.seats import Seats
@@ -17,6 +18,7 @@ from drystone.planner.stock import Rest, Stock
 from drystone.planner.views import Views
 from drystone.poses import PoseBook
 from drystone.settle.book import OutlineBook
+from drystone.settle.wedge import WedgeLimits
 from drystone.stabilise.memory import StabiliseMemory
 
 
@@ -37,6 +39,7 @@ class Workshop:
     costs: PoseCosts  # of their poses, wherever they go
     views: Views  # of walls of outlines
     seats: Seats  # tries places on them
+    limits: WedgeLimits  # what their wedges may be, source px
     _angles: dict[int, tuple[float, ...]] = field(default_factory=dict, init=False, repr=False)
 
     @classmethod
@@ -55,6 +58,7 @@ class Workshop:
             stones, site, book, clusters, settings.orientations, fitting, stock, memory, outlines,
             PoseCosts(stock, frozenset(settings.pin)), Views(site),
             Seats(mean_size, settings.settle, settings.mu, settings.pin, len(usable)),
+            wedge_limits(settings, stock, site),
         )  # fmt: skip
 
     def poses(self, stone_id: int) -> tuple[PosedStone, ...]:
@@ -82,6 +86,23 @@ class Workshop:
     def rest(self, build: Build) -> Rest:
         """Return what the stones that are left could still fill."""
         return Rest.of([self.stock.sides[i] for i in self.remaining(build)], self.site)
+
+
+def wedge_limits(settings: PlannerSettings, stock: Stock, site: Site) -> WedgeLimits:
+    """Return what wedges may be, in source px; the stock is in working px."""
+    settle, size_px = settings.settle, stock.median_area_px**0.5 / site.scale
+    rule = WedgeRule.of(settings.wedge, settings.mu, size_px, site.px_per_m)
+    return WedgeLimits(
+        **asdict(rule),
+        margin=settings.stabilise.margin,
+        clearance_px=settle.clearance_px,
+        contact_px=0.5 * settle.contact_px,
+        setback=settle.setback,
+        # Where there is less room than the shortest side of a stone, none comes.
+        room_px=min((shorter for shorter, _ in stock.sides.values()), default=0) / site.scale,
+        rest=settle.margin,
+        steep=settle.steep,
+    )
 
 
 def fitting_stones(

@@ -71,7 +71,7 @@ class Mason:
     def of(cls, yard: Yard, laying: LayingSettings) -> "Mason":
         """Return one who looks at the bare ground."""
         workshop, settings = yard.workshop, yard.settings
-        hand = Hand(laying, settings.settle, yard.limits, settings.stabilise.method)
+        hand = Hand(laying, settings.settle, workshop.limits, settings.stabilise.method)
         evaluator = Evaluator(settings, workshop.stock, until=yard.until)
         width_px, mu = workshop.site.extent_px[0], settings.mu
         views = {side: SideView.bare(width_px, side, mu, laying.column_px) for side in SIDES}

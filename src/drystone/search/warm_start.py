@@ -9,7 +9,7 @@ from drystone.planner.planner import Planner
 from drystone.planner.workshop import Workshop
 from drystone.search.packed import settled_again
 from drystone.search.yard import Yard
-from drystone.settle.wedge import WedgeLimits, squeezed_out
+from drystone.settle.wedge import squeezed_out
 
 EDGE_PX = 1e-6
 """What rounding may add to `settle.beyond_px`, source px."""
@@ -27,13 +27,13 @@ def begin_with(
     now, or not standing with these settings, as when what carried them is left out.
     """
     yard = Yard.of(planner)
-    workshop, settings, limits = yard.workshop, yard.settings, yard.limits
+    workshop, settings = yard.workshop, yard.settings
     allowed, groups, last = set(workshop.fitting), [], -1
     for group in wall.groups:
         stone_id = group.placement.stone_id
         in_turn = settings.order == "free" or stone_id > last
         if stone_id in allowed and in_turn and _within(wall, group, settings.settle.beyond_px):
-            groups.append(_as_here(wall, group, limits, workshop))
+            groups.append(_as_here(wall, group, workshop))
             last = stone_id
     planner.build, _, solves = yard.replayed(planner.build, groups, course_heights_px, strict=False)
     planner.solves += solves
@@ -53,7 +53,7 @@ def _within(wall: Wall, group: Group, beyond_px: float) -> bool:
     )
 
 
-def _as_here(wall: Wall, group: Group, limits: WedgeLimits, workshop: Workshop) -> Group:
+def _as_here(wall: Wall, group: Group, workshop: Workshop) -> Group:
     """Return a step on outlines as this search has it.
 
     With its own outline of the stone, that of a plan may be coarser, and without the wedges that
@@ -62,7 +62,7 @@ def _as_here(wall: Wall, group: Group, limits: WedgeLimits, workshop: Workshop) 
     placement, settled = group.placement, group.placement.settled
     if settled is None:
         return group
-    around, width = wall.exact.polygons, wall.site.extent_px[0]
+    limits, around, width = workshop.limits, wall.exact.polygons, wall.site.extent_px[0]
     kept = (
         wedge
         for wedge in group.wedges

@@ -115,7 +115,7 @@ def one_more_wedge(build: Build, stone_id: int, yard: Yard) -> Iterator[tuple[Bu
     first = sum(1 + len(group.wedges) for group in groups[:step])
     placed = PlacedPolygons(build.wall.exact.ids, build.wall.exact.polygons)
     width = build.wall.site.extent_px[0]
-    for place in wedge_places(placed, step, first, width, yard.limits):
+    for place in wedge_places(placed, step, first, width, yard.workshop.limits):
         steps = _Steps(yard, build.course_heights_px())
         wall = steps.changed(build, [_Change(step, place.corners)])
         if wall is not None:
@@ -158,7 +158,7 @@ def _drafted(
     build: Build, steps: _Steps, most: int, barred: Barred
 ) -> tuple[list[_Change], list[_Change]]:
     """Return which wedges a wall should get, the most useful first, and which it does not need."""
-    draft = WedgeDraft.of(build, steps.yard.limits)
+    draft = WedgeDraft.of(build, steps.yard.workshop.limits)
     number = steps.yard.workshop.next_wedge(build)
     while len(draft.added) < most:
         better = _with_one_more(draft, number + len(draft.added), barred, steps.yard.until)

@@ -8,13 +8,11 @@ from numpy.random import Generator
 from drystone.model.wall import Group
 from drystone.planner.build import Build
 from drystone.planner.deadline import NEVER, Deadline
-from drystone.planner.dropping import wedge_limits
 from drystone.planner.planner import Planner
 from drystone.planner.replay import Replayed, replayed
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.vary import varied
 from drystone.planner.workshop import Workshop
-from drystone.settle.wedge import WedgeLimits
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,11 +30,6 @@ class Yard:
     def of(cls, planner: Planner, until: Deadline = NEVER) -> "Yard":
         """Return that of a planner."""
         return cls(planner.workshop, planner.settings, until)
-
-    @property
-    def limits(self) -> WedgeLimits:
-        """What wedges may be, source px."""
-        return wedge_limits(self.settings, self.workshop.stock, self.workshop.site)
 
     def jointed(self, number: int) -> "Yard":
         """Return that of a wall of a search: every other one has open joints."""

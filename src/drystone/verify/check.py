@@ -13,7 +13,7 @@ from drystone.model.plan import Plan, PlanMetrics, WedgeStep
 from drystone.model.steps import Problem
 from drystone.model.stone import StoneSet
 from drystone.model.wall import Labels
-from drystone.planner.dropping import wedge_limits
+from drystone.planner.workshop import wedge_limits
 from drystone.statics.model import RigidBlockModel
 from drystone.verify import claims, pieces
 from drystone.verify.blocks import check_blocks
