@@ -10,14 +10,13 @@ import shapely
 from drystone import Planner, Site, Stone, StoneSet, generate, method_settings
 from drystone.io.plan_json import plan_from_json, plan_to_json
 from drystone.kernels.polygons import on_grid, turn
-from drystone.model.placement import Settled
 from drystone.model.stone import Source
 from drystone.model.wall import outlined
 from drystone.planner.deadline import Deadline
 from drystone.planner.events import Stopped
 from drystone.search.plan_result import finish as finished
 from drystone.settle.placing import settled_placement
-from drystone.settle.rest import placed_outline
+from drystone.settle import rest
 from drystone.settle.settings import SettleSettings
 from drystone.verify.check import check_plan
 
@@ -76,7 +75,7 @@ def settled_at(wall, stone, corner, angle_deg=0.0, side="left"):
     """Place a stone in a wall of outlines, the bottom-left corner of its box at a place."""
     outline = stone.outline_within(SettleSettings().outline_px)
     x, y = on_grid(np.array(corner) - turn(outline, angle_deg).min(axis=0)).tolist()
-    settled = Settled(x, y, placed_outline(outline, angle_deg, x, y))
+    settled = rest.settled_at(outline, angle_deg, x, y)
     return settled_placement(wall.exact, wall.site, stone, angle_deg, settled, side, 0)
 
 

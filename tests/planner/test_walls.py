@@ -13,7 +13,7 @@ import drystone as ds
 from drystone import generate
 from drystone.planner.settings import METHODS
 from drystone.search.goal import mean_top
-from drystone.settle.rest import placed_outline
+from drystone.settle.rest import settled_at
 from tests.naive.planner import SlowPlanner
 from tests.planner import scenes
 from tests.strategies import repeatable
@@ -216,7 +216,7 @@ def check(result, stones, settings, site):
     for group in result.wall.groups:
         placement, at = group.placement, group.placement.exact
         outline = placement.posed.stone.outline_within(settings.settle.outline_px)
-        corners = placed_outline(outline, placement.posed.angle_deg, at.x_px, at.y_px)
+        corners = settled_at(outline, placement.posed.angle_deg, at.x_px, at.y_px).corners
         assert np.array_equal(corners, at.corners)
         filled += placement.posed.area_px + sum(wedge.area_px for wedge in group.wedges)
     assert filled == np.count_nonzero(result.wall.labels)  # every pixel was filled by one of them

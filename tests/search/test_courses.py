@@ -26,7 +26,7 @@ from drystone.search.operators import NEW, OPERATORS, RECREATED, RELAID, REPLANN
 from drystone.search.packed import PackedWall, found_again
 from drystone.search.ruin import RUINS, joint, taken_down, with_all_above
 from drystone.search.yard import Yard
-from drystone.settle.rest import placed_outline
+from drystone.settle.rest import settled_at
 from drystone.statics.incremental import IncrementalResult
 from tests.planner import scenes
 from tests.polygons import box
@@ -53,7 +53,7 @@ def task(stones, size, cell_px=1.0, settings=QUICK, **options):
 
 def outline_of(stones, planned):
     outline = stones.by_id(planned.stone_id).outline_within(TOLERANCE_PX)
-    return placed_outline(outline, planned.angle_deg, planned.x_px, planned.y_px)
+    return settled_at(outline, planned.angle_deg, planned.x_px, planned.y_px).corners
 
 
 def wall_for(stones, share):

@@ -28,9 +28,9 @@ from drystone.settle.rest import (
     come_to_rest,
     lay,
     let_go,
-    placed_outline,
     repose,
     rests,
+    settled_at,
     touch_down,
     ways,
 )
@@ -209,7 +209,7 @@ def test_poses_are_on_a_grid_and_angles_in_one_turn():
     assert -180.0 <= angle_deg < 180.0
     assert (angle_deg - 180.0 + 1.0) % 360.0 == pytest.approx(1.0, abs=1e-2)
     assert (x * GRID, y * GRID) == (round(x * GRID), round(y * GRID))
-    corners = placed_outline(outline, angle_deg, x, y)
+    corners = settled_at(outline, angle_deg, x, y).corners
     assert found.settled.corners.tobytes() == corners.tobytes()
     assert (corners == turn(outline, angle_deg) + np.array([x, y])).all()
     with pytest.raises(ValueError, match="read-only"):

@@ -17,7 +17,7 @@ from drystone.model.plan import WedgeStep
 from drystone.model.site import Site
 from drystone.model.stone import OUTLINE_TOLERANCE_PX, Stone
 from drystone.search.plan_wall import plan_wall
-from drystone.settle.rest import placed_outline
+from drystone.settle.rest import settled_at
 from drystone.settle.wedge import WedgeLimits
 from drystone.verify.check import check_plan
 from drystone.verify.pieces import (
@@ -142,7 +142,7 @@ def problems(mask, outline, angle_deg=0.0):
     """What is said of an outline of some pixels, about their centroid, at some place."""
     at = np.array([31.5, 12.25])
     step = replace(STONE_STEP, angle_deg=angle_deg)
-    corners = placed_outline(outline, angle_deg, *at.tolist())
+    corners = settled_at(outline, angle_deg, *at.tolist()).corners
     return [
         p.message
         for p in check_outline(step, Stone(SLAB_ID, mask), at, corners, OUTLINE_TOLERANCE_PX)

@@ -12,7 +12,7 @@ from drystone.errors import InputError
 from drystone.kernels.gaps import crosses_any
 from drystone.kernels.polygons import Points, place_on_grid
 from drystone.kernels.raster import wrap_deg
-from drystone.model.placement import Placement, Settled, Side
+from drystone.model.placement import Placement, Side
 from drystone.model.pose import PosedStone
 from drystone.model.stone import Stone
 from drystone.model.wall import Group
@@ -30,7 +30,7 @@ from drystone.settle.rest import (
     Turned,
     come_to_rest,
     lay,
-    placed_outline,
+    settled_at,
 )
 from drystone.settle.wedge import wedged
 from drystone.stabilise.stabilise import WedgeStock, stabilise
@@ -261,7 +261,7 @@ def _on_outlines(
             # Where it was let go it does not rest.
             x = start[0] if scene.side == "left" else scene.width_px - start[0]
             x, y = place_on_grid(x, start[1])
-            there = Settled(x, y, placed_outline(turned.outline, turned.angle_deg, x, y))
+            there = settled_at(turned.outline, turned.angle_deg, x, y)
             repose = Repose(there, turned.angle_deg, turned=False, margin=-1.0)
             yield from taken_in(repose, None)
             return

@@ -16,7 +16,7 @@ from drystone.model.settings import of_type
 from drystone.model.site import Site, working_px
 from drystone.model.stone import Stone, StoneSet
 from drystone.model.wall import Labels, Wall
-from drystone.settle.rest import placed_outline
+from drystone.settle.rest import settled_at
 
 SEEN = (0.6, 1.5)
 """A stone of which less than this share is in the picture, or more, is not measured by it."""
@@ -236,7 +236,7 @@ def _expected(wall: Wall, scale: float) -> Labels:
     for placement in wall.placements:
         x, y = placement.centroid(site.height_px)
         at = placement.posed.angle_deg, x / site.scale, y / site.scale
-        corners = placed_outline(placement.posed.stone.outline, *at)
+        corners = settled_at(placement.posed.stone.outline, *at).corners
         shares, left, bottom = coverage(corners * scale)
         top = len(labels) - bottom - len(shares)
         inside, part = windows(labels.shape, shares.shape, top, left)

@@ -9,15 +9,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from drystone.kernels.raster import Mask
-from drystone.model.placement import Placement, Settled, Side, Wedge
+from drystone.model.placement import Placement, Side, Wedge
 from drystone.model.pose import PosedStone
-from drystone.model.stone import Stone
 from drystone.model.wall import Group
 from drystone.planner.build import Solves
 from drystone.planner.workshop import Workshop
 from drystone.search.goal import Courses, FoundWall, WallFigures
 from drystone.search.yard import Yard
-from drystone.settle.rest import placed_outline
+from drystone.settle.rest import settled_at
 
 UNSEEN: Mask = np.ones((1, 1), bool)
 """Stands for the pixels of what is settled, which are found when it is placed."""
@@ -90,18 +89,10 @@ def found_again(one: PackedWall, yard: Yard) -> FoundWall:
 def _group(one: PackedGroup, workshop: Workshop) -> Group:
     stone = workshop.stones.by_id(one.stone_id)
     posed = PosedStone(stone, one.angle_deg, workshop.site.scale, UNSEEN.copy(), (0.0, 0.0))
-    settled = settled_again(stone, one.angle_deg, one.place, workshop)
+    settled = settled_at(workshop.outlines.outline(stone), one.angle_deg, *one.place)
     placement = Placement(posed, 0, 0, one.side, one.rotation_moves, settled)
     wedges = (Wedge(0, one.stone_id, UNSEEN.copy(), 0, 0, np.array(cut)) for cut in one.wedges)
     return Group(placement, tuple(wedges))
-
-
-def settled_again(
-    stone: Stone, angle_deg: float, place: tuple[float, float], workshop: Workshop
-) -> Settled:
-    """Return where a stone lies whose centroid is at a place, source px."""
-    outline = workshop.outlines.outline(stone)
-    return Settled(*place, placed_outline(outline, angle_deg, *place))
 
 
 def archived(kept: Iterable[PackedWall], more: Iterable[PackedWall]) -> tuple[PackedWall, ...]:

@@ -7,8 +7,8 @@ from drystone.model.wall import Group, Wall, outlined
 from drystone.model.wedge_shape import WedgeShape
 from drystone.planner.planner import Planner
 from drystone.planner.workshop import Workshop
-from drystone.search.packed import settled_again
 from drystone.search.yard import Yard
+from drystone.settle.rest import settled_at
 from drystone.settle.wedge import squeezed_out
 
 EDGE_PX = 1e-6
@@ -70,6 +70,6 @@ def _as_here(wall: Wall, group: Group, workshop: Workshop) -> Group:
         and limits.allows(WedgeShape.of(wedge.corners))
         and not squeezed_out(wedge.corners, settled.corners, around, width, limits)
     )
-    place, angle_deg = (settled.x_px, settled.y_px), placement.posed.angle_deg
-    again = settled_again(placement.posed.stone, angle_deg, place, workshop)
+    outline, angle_deg = workshop.outlines.outline(placement.posed.stone), placement.posed.angle_deg
+    again = settled_at(outline, angle_deg, settled.x_px, settled.y_px)
     return Group(replace(placement, settled=again), tuple(kept))

@@ -219,10 +219,10 @@ def repose(stone: Turned, scene: SettlingScene, found: Settling) -> Repose:
     x = found.x if scene.side == "left" else scene.width_px - found.x
     angle_deg = wrap_deg(stone.angle_deg + sign * math.degrees(found.angle))
     x, y = place_on_grid(x, found.y)
-    corners = placed_outline(stone.outline, angle_deg, x, y)
-    return Repose(Settled(x, y, corners), angle_deg, found.angle != 0.0, found.margin)
+    settled = settled_at(stone.outline, angle_deg, x, y)
+    return Repose(settled, angle_deg, found.angle != 0.0, found.margin)
 
 
-def placed_outline(outline: Points, angle_deg: float, x_px: float, y_px: float) -> Points:
-    """Return an outline turned by an angle, with its centroid at a place of the wall frame."""
-    return np.asarray(turn(outline, angle_deg) + (x_px, y_px))  # noqa: RUF005 - an array
+def settled_at(outline: Points, angle_deg: float, x_px: float, y_px: float) -> Settled:
+    """Turn an outline by an angle, and put its centroid at a place of the wall frame."""
+    return Settled(x_px, y_px, turn(outline, angle_deg) + np.array((x_px, y_px)))

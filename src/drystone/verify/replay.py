@@ -21,7 +21,7 @@ from drystone.model.wall import Group, Labels, Wall
 from drystone.planner.settings import PlannerSettings
 from drystone.poses import pose_at
 from drystone.settle.placing import settled_placement, settled_wedge
-from drystone.settle.rest import placed_outline
+from drystone.settle.rest import settled_at
 from drystone.settle.settings import SettleSettings
 from drystone.verify.lengths import plan_settings, plan_site, source_points, working_points
 
@@ -151,7 +151,7 @@ def settled_stone(step: StoneStep, stones: StoneSet, site: Site, outline_px: flo
     """Return where a stone step puts its outline; raise PlanError (E201) when there is none."""
     outline = stones.by_id(step.stone).outline_within(outline_px)
     x, y = source_points([step.centroid], site)[0].tolist()
-    return Settled(x, y, placed_outline(outline, step.angle_deg, x, y))
+    return settled_at(outline, step.angle_deg, x, y)
 
 
 def wedge_corners(step: WedgeStep, site: Site) -> Points:
