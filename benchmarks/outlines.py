@@ -18,7 +18,7 @@ from drystone.planner.proposing import StoneTrial, one_by_one
 from drystone.planner.settings import method_settings
 from drystone.planner.settling import ExactProposer
 from drystone.settle.book import Hung
-from drystone.settle.rest import SettlingScene, placed_outline, ways
+from drystone.settle.rest import SettlingScene, settled_at, ways
 from drystone.settle.settings import SettleSettings
 
 CELL = 2.0
@@ -66,7 +66,7 @@ class OutlineScene:
         """Return the stones that rest, where they do."""
         found = [(one, self.settled(one)) for one in self.let_go]
         return [
-            placed_outline(one.hung.turned.corners, float(np.degrees(end.angle)), end.x, end.y)
+            settled_at(one.hung.turned.corners, float(np.degrees(end.angle)), end.x, end.y).corners
             for one, end in found
             if end.status is Status.RESTS
         ]

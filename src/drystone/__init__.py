@@ -79,11 +79,7 @@ _HOMES = {
 __all__ = ["generate", *_HOMES]  # noqa: PLE0604 - the keys are strings
 
 
-def _plan_as_html(result: Any) -> str:
-    return str(import_module("drystone.drawing.report.html").view(result)._repr_html_())
-
-
-show_by("plan", _plan_as_html)
+show_by("plan", lambda one: import_module("drystone.drawing.report.html").view(one)._repr_html_())
 
 
 def __getattr__(name: str) -> Any:

@@ -10,7 +10,7 @@ from drystone.model.stone import Source, StoneSet
 from drystone.search import plan_result
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.result import LimitStatus
-from drystone.verify import claims
+from drystone.verify import check, claims
 from drystone.verify.check import PrefixAlpha, check_plan
 from drystone.verify.replay import PENETRATION_PX
 from tests.planner.scenes import read_again
@@ -352,7 +352,8 @@ def test_what_the_solver_finds_is_said(monkeypatch):
             other = replace(getattr(both, side), status=status, alpha=None)
             return both if len(seen) <= after else replace(both, **{side: other})
 
-        monkeypatch.setattr(claims, "lateral_resistance", analyse)
+        for place in (check, claims):
+            monkeypatch.setattr(place, "lateral_resistance", analyse)
         problems = check_plan(EXACT.plan, EXACT.stones).problems
         told = [(p.code, p.message) for p in problems if p.code in ("E230", "E237")]
         assert bool(told) == (said is not None)

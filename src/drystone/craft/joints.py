@@ -10,9 +10,6 @@ from numpy.typing import NDArray
 from drystone.kernels.polygons import Points
 from drystone.kernels.profiles import Floats
 
-STEEPEST = 1.0
-"""A joint that rises more than it runs is a head joint, else a bed joint: 45 degrees."""
-
 
 @dataclass(frozen=True)
 class Run:
@@ -159,7 +156,8 @@ def _pieces(samples: list[tuple[int, float]], spacing: float) -> Iterator[list[t
     piece = samples[:1]
     for sample in samples[1:]:
         line, middle = piece[-1]
-        if sample[0] - line > 1 or abs(sample[1] - middle) > STEEPEST * spacing:
+        # At 45 degrees a joint rises as much as it runs.
+        if sample[0] - line > 1 or abs(sample[1] - middle) > spacing:
             yield piece
             piece = []
         piece.append(sample)

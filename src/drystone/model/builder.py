@@ -16,9 +16,6 @@ from drystone.model.outlines import Outlined
 ROBOT, HAND = 0.015, 0.03
 """Precision p of a good robot, and of a hand."""
 
-WEDGE_SHARE = 1 / 3
-"""Errors of a wedge over those of a stone: it is small, and cut to its place."""
-
 MODES = np.arange(2, 7)
 """Waves around an outline; 0 would change its size, 1 only shift it."""
 
@@ -83,7 +80,7 @@ def put_down_with(
 
     The stone comes first.  `numbers`, (runs, blocks, :data:`NUMBERS`), have standard deviation 1.
     """
-    wedge = errors.times(WEDGE_SHARE)
+    wedge = errors.times(1 / 3)  # it is small, and cut to its place
     put = [
         [(i, built) for built in (wedge if k else errors).all_built(corners, numbers[:, k])]
         for k, (i, corners) in enumerate(group)

@@ -70,7 +70,6 @@ def typed(called: Called) -> Called:
     return checked  # type: ignore[return-value]
 
 
-_LARGEST = 1e12
 _MOST = 2**63 - 1
 """What arrays hold; Python reads longer ones from files and options."""
 
@@ -215,7 +214,7 @@ def check_finite(settings: Any) -> None:
         value = getattr(settings, field.name)
         if dataclasses.is_dataclass(value):
             check_finite(value)
-        elif isinstance(value, float) and not abs(value) <= _LARGEST:
+        elif isinstance(value, float) and not abs(value) <= 1e12:
             raise ValueError(f"{field.name} must be a finite number up to 1e12, not {value}")
 
 

@@ -19,9 +19,6 @@ from drystone.selection.policies.table1 import ENGINE
 from drystone.selection.policy import Policy, choice_of
 from drystone.selection.scored import ScoreSettings
 
-EQUAL_GDS = 1e-9
-"""Two winners' GDS within this are equal (DESIGN 4.7)."""
-
 Judge = Callable[[Sequence[Proposal]], list[Candidate]]
 
 
@@ -44,7 +41,8 @@ def better_side(
     if not winners:
         return None
     most = max(winner.indices.GDS for winner in winners)
-    level = [winner for winner in winners if winner.indices.GDS >= most - EQUAL_GDS]
+    # So near they are equal (DESIGN 4.7).
+    level = [winner for winner in winners if winner.indices.GDS >= most - 1e-9]
 
     def rank(winner: Candidate) -> tuple[float, int, bool]:
         total = weighted_sum(action_of(winner, settings), settings)

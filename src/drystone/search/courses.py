@@ -25,9 +25,6 @@ from drystone.model.placement import Side
 from drystone.planner.deadline import NEVER, Deadline
 from drystone.search.course_task import CourseTask
 
-LOOKED_AT = 2
-"""A plan is looked for as if there were at most so many times the stones that the wall takes."""
-
 
 @dataclass(frozen=True)
 class PlannedStone:
@@ -68,7 +65,7 @@ def plan_courses(
     as much when they are left out.
     """
     settings = task.settings
-    looked_at = min(len(task.stones), LOOKED_AT * task.taken)  # of a large stock not all
+    looked_at = min(len(task.stones), 2 * task.taken)  # of a large stock not all
     task = task.choosing(pinned)
     start = None if begun is None else resumed(task, begun.courses[keep:])
     if start is None:

@@ -24,9 +24,6 @@ from drystone.search.letting_go import Aim, Hand, Resting
 from drystone.search.yard import Yard
 from drystone.settle.placing import settled_in
 
-HALVES_DEG = 0.0, 180.0
-"""Turns from the planned pose that are tried, one after the other."""
-
 SIDES: tuple[Side, ...] = ("left", "right")
 
 
@@ -123,7 +120,7 @@ class Mason:
         unit_px = workshop.stock.mean_height_px / site.scale
         highest_px = site.extent_px[1] + self.yard.settings.settle.beyond_px
         stone, least = workshop.stones.by_id(planned.stone_id), math.inf
-        for half_deg in HALVES_DEG:
+        for half_deg in (0.0, 180.0):
             angle_deg = wrap_deg(planned.angle_deg + half_deg)
             turned = workshop.outlines.hung(stone, angle_deg, side).turned
             aim = Aim(left, planned.top_px, angle_deg, highest_px, unit_px)

@@ -39,9 +39,6 @@ MOST_UNDER_ONE = 2
 MOST_BLOCKS = 400
 """Up to here the simplex kernel is the quickest; one wall is drafted at a time, memory is small."""
 
-PROP_MU = 100.0
-"""Friction of the prop that holds a wedge that shall not matter; no wall carries so much."""
-
 
 @dataclass(frozen=True, eq=False)
 class WedgePlace:
@@ -257,7 +254,7 @@ class WedgeDraft:
         closed = tuple(k for k, i in enumerate(model.interfaces) if wedge in (i.block, i.other))
         (x, y), half = block.centroid, 0.5 * block.area**0.5
         points = np.array([[x - half, y], [x + half, y]])
-        prop = Interface(wedge, GROUND, points, (0.0, 1.0), PROP_MU)
+        prop = Interface(wedge, GROUND, points, (0.0, 1.0), 100.0)  # no wall carries so much
         return model.with_added((), (prop,), closed)
 
     def without(self, model: RigidBlockModel) -> "WedgeDraft":

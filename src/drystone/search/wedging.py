@@ -30,9 +30,6 @@ SAME = 1e-7
 ANALYSED = 24
 """Most wedges of a round that are analysed: those that the mechanism violates most."""
 
-DRAFTS = 4
-"""Most drafts of a wall; each but the last had a wedge with which the steps cannot be taken."""
-
 Barred = frozenset[tuple[int, bytes]]
 """Steps and outlines of wedges with which the wall does not stand after every step."""
 
@@ -125,7 +122,7 @@ def one_more_wedge(build: Build, stone_id: int, yard: Yard) -> Iterator[tuple[Bu
 def _wedged(wall: Build, steps: _Steps, most: int) -> Build:
     """Return a wall that knows its states with other wedges; the same when nothing changes."""
     barred = Barred()
-    for _ in range(DRAFTS):
+    for _ in range(4):  # each draft but the last had a wedge that cannot be added
         added, dropped = _drafted(wall, steps, most, barred)
         better = _with_all(wall, added, dropped, steps)
         if better is not None:

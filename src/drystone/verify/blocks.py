@@ -22,8 +22,6 @@ NEAR_PX = 0.01
 SAME_WAY = 1e-3
 """Between unit normals: that much a short edge turns when its ends are rounded."""
 
-SAME_FRICTION = 1e-9
-
 IdPair = tuple[int, int]
 
 
@@ -50,7 +48,7 @@ def check_blocks(
     if odd:
         said = f"of another density, fixed or held in {FILE}: {', '.join(map(str, odd))}."
         problems.append(_problem(said))
-    if any(abs(claimed.friction(face) - replay.settings.mu) > SAME_FRICTION
+    if any(abs(claimed.friction(face) - replay.settings.mu) > 1e-9
            for face in claimed.interfaces):  # fmt: skip
         problems.append(_problem(f"friction in {FILE} is not mu = {replay.settings.mu:g}."))
     if model is not None:

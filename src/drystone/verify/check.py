@@ -14,6 +14,7 @@ from drystone.model.steps import Problem
 from drystone.model.stone import StoneSet
 from drystone.model.wall import Labels
 from drystone.planner.workshop import wedge_limits
+from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel
 from drystone.verify import claims, pieces
 from drystone.verify.blocks import check_blocks
@@ -143,8 +144,9 @@ def _check_stages(
     settings, stock = reference.settings, reference.stock
     steps = {p.id: p.step for p in replay.pieces if isinstance(p.step, WedgeStep)}
     for stage in replay.stages:
-        model, resistance, faults = claims.check_stability(stage, settings)
-        problems += faults
+        model = claims.wall_model(stage.after, settings)
+        resistance = None if model is None else lateral_resistance(model)
+        problems += claims.check_stands(stage, resistance) or claims.check_sturdy(stage, settings)
         models.append(model)
         alphas: tuple[float | None, float | None] = (None, None)
         if resistance is not None:

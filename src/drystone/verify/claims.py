@@ -31,20 +31,6 @@ ALPHA_TOLERANCE = 1e-7
 """Between load multipliers claimed and found: two solvers' optima of one program."""
 
 
-def check_stability(
-    stage: Stage, settings: PlannerSettings
-) -> tuple[RigidBlockModel | None, LateralResistance | None, list[Problem]]:
-    """Analyse the wall after a stone and its wedges; with fewer wedges it need not stand.
-
-    Returned are its model and what it carries, None where the wall hangs in the air, and problems.
-    E230: it does not stand, or the solver gave up.  E231: another load multiplier is claimed.
-    E237: a wall of outlines stands by friction that it should not need.
-    """
-    model = wall_model(stage.after, settings)
-    resistance = None if model is None else lateral_resistance(model)
-    return model, resistance, _judge(stage, resistance) or _not_sturdy(stage, settings)
-
-
 def wall_model(wall: Wall, settings: PlannerSettings) -> RigidBlockModel | None:
     """Return the model of a wall on its geometry; None when nothing stands on the ground."""
     if wall.outlines is None:
@@ -72,7 +58,7 @@ def contradicted(name: str, claimed: float | None, found: float | None) -> str:
     return f"{name} is {said} by the plan, {found} was found."
 
 
-def _not_sturdy(stage: Stage, settings: PlannerSettings) -> list[Problem]:
+def check_sturdy(stage: Stage, settings: PlannerSettings) -> list[Problem]:
     """Say that a wall of outlines does not stand in its sturdy model (E237)."""
     outlines = stage.after.outlines
     if outlines is None:
@@ -88,7 +74,12 @@ def _not_sturdy(stage: Stage, settings: PlannerSettings) -> list[Problem]:
     return [Problem("E237", stage.last.step, message)]
 
 
-def _judge(stage: Stage, resistance: LateralResistance | None) -> list[Problem]:
+def check_stands(stage: Stage, resistance: LateralResistance | None) -> list[Problem]:
+    """Say that a wall does not stand after a stone and its wedges, or carries else than claimed.
+
+    With fewer wedges it need not stand.  No resistance: it hangs in the air.  E230: it does not
+    stand, or the solver gave up; E231: another load multiplier is claimed.
+    """
     last = stage.last
     if resistance is None:
         return [Problem("E230", last.step, "nothing of the wall stands on the ground.")]

@@ -29,16 +29,10 @@ from drystone.statics.model import RigidBlockModel
 from drystone.verify.lengths import working_points
 from drystone.verify.replay import PENETRATION_PX, Stage
 
-SAME_AREA = 1e-6
-"""Outlines have the area of the pixels but for rounding, as a share of it."""
-
 SLIVER_CELLS = 1.0
 """What stands in the way is moved aside, or slid under, when it is not wider; working px.
 
 Pixels cannot tell less either."""
-
-AREA_TOLERANCE_PX = 1e-6
-"""Between the area of a wedge's polygon and of its pixels, working px."""
 
 
 def check_outline(
@@ -63,7 +57,7 @@ def check_outline(
     said = []
     if off > allowed:
         said.append(f"is {off:.3g} source px from the rim that was read; {allowed:.3g} are allowed")
-    if abs(share - 1.0) > SAME_AREA:
+    if abs(share - 1.0) > 1e-6:  # more than rounding
         said.append(f"has {share:.6g} times the area that was read")
     return [Problem("E240", step.step, f"the outline of stone {stone.id} {why}.") for why in said]
 
@@ -190,7 +184,7 @@ def check_settled_wedge(
 def check_polygon(step: WedgeStep, wedge: Wedge, site: Site) -> list[Problem]:
     """Verify that a wedge's polygon is that of its pixels, counter-clockwise (E222)."""
     area, *_ = area_and_centroid(working_points(step.polygon, site))
-    if abs(area - wedge.area_px) <= AREA_TOLERANCE_PX * max(1.0, wedge.area_px):
+    if abs(area - wedge.area_px) <= 1e-6 * max(1.0, wedge.area_px):
         return []
     message = (
         f"the polygon of wedge {wedge.id} has an area of {area:.9g} working px (negative: "

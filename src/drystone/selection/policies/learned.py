@@ -31,9 +31,6 @@ FEATURES = (
 """Of an offer (docs/evidence/learning.md).  SF and the size of the stone are not among them: they
 hardly differ between the places of one stone, so stones that arrive teach nothing of them."""
 
-FLUSH = 0.15
-"""A stone ends with the wall when less than this share of its size is left above it."""
-
 
 @dataclass(frozen=True)
 class ValueModel:
@@ -138,7 +135,7 @@ def _own(offer: Offer) -> tuple[float, ...]:
         top**2,
         min(1.0, above),
         _sliver(above),
-        float(above < FLUSH),
+        float(above < 0.15),  # it ends with the wall
         width / (width + height),
         offer.from_end_px / offer.wall_width_px,
         _sliver(beside),
