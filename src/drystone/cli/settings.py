@@ -32,9 +32,6 @@ SHOWN = (
 )  # fmt: skip
 """What the help of `plan` lists; the other options are settings, for scripts and for studies."""
 
-_Change = tuple[str, dict[str, Any]]
-"""Options, as an error names them, and what they change."""
-
 
 def add_settings(command: argparse.ArgumentParser) -> None:
     """Add the options that say how a wall is planned."""
@@ -163,8 +160,10 @@ def _blamed(error: UsageError, where: str) -> UsageError:
     return UsageError(error.code, error.what, where=where, cure=error.cure)
 
 
-def _changes(settings: PlannerSettings, arguments: argparse.Namespace) -> Iterator[_Change]:
-    """Yield what the options ask for; what only makes sense together is one change."""
+def _changes(
+    settings: PlannerSettings, arguments: argparse.Namespace
+) -> Iterator[tuple[str, dict[str, Any]]]:
+    """Yield options, as an error names them, and what they change together."""
 
     def given(**options: str) -> dict[str, Any]:
         values = {name: getattr(arguments, option) for name, option in options.items()}

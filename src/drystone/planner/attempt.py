@@ -30,7 +30,6 @@ from drystone.selection.sampling import sample_stones, second_fold
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
-Key = tuple[int, float, Side, int]
 
 TASKS = 16
 """Into how many tasks the candidates of a step are divided for an executor."""
@@ -74,7 +73,7 @@ class Attempt:
         self._evaluator = Evaluator(settings, workshop.stock, self._profile)
         sides: tuple[Side, ...] = ("left", "right") if settings.two_sided else ("left",)
         self._landscapes = {side: Landscape.of(build.wall, side) for side in sides}
-        self._judged: dict[Key, Candidate] = {}
+        self._judged: dict[tuple[int, float, Side, int], Candidate] = {}
         # Those that stand, but fall in so large a share of the trials, which is bearable.
         self._unsure: list[tuple[float, Candidate]] = []
         self._refused = False  # whether a stone fell in too many trials somewhere

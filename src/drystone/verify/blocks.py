@@ -22,8 +22,6 @@ NEAR_PX = 0.01
 SAME_WAY = 1e-3
 """Between unit normals: that much a short edge turns when its ends are rounded."""
 
-IdPair = tuple[int, int]
-
 
 def check_blocks(
     content: Any, plan: Plan, replay: Replay, model: RigidBlockModel | None
@@ -81,9 +79,9 @@ def _check_outlines(outlines: Mapping[int, Points], replay: Replay) -> list[Prob
     return problems
 
 
-def _by_pair(model: RigidBlockModel, px: float) -> dict[IdPair, list[Interface]]:
+def _by_pair(model: RigidBlockModel, px: float) -> dict[tuple[int, int], list[Interface]]:
     """Return the interfaces of each pair in source px, normals into the larger id."""
-    found: dict[IdPair, list[Interface]] = {}
+    found: dict[tuple[int, int], list[Interface]] = {}
     for face in model.interfaces:
         low, high = sorted((face.block, face.other))
         (x, y), sign = face.normal, 1.0 if face.block == high else -1.0

@@ -7,6 +7,7 @@ import shapely
 
 from drystone.errors import PlanError
 from drystone.kernels.polygons import Points
+from drystone.model.outlines import Outlined
 from drystone.model.overlap import common_parts, shape_of
 from drystone.model.plan import Plan, WedgeStep
 from drystone.model.site import Site
@@ -18,12 +19,9 @@ from drystone.verify.replay import settled_stone
 NO_AREA_PX = 1e-9
 """A polygon with an area below this, in square px, has none but for rounding."""
 
-PolygonGroup = tuple[tuple[int, Points], ...]
-"""A stone and its wedges, the stone first: ids and corners."""
 
-
-def plan_polygons(plan: Plan, stones: StoneSet) -> tuple[PolygonGroup, ...]:
-    """Return every stone with its wedges where the plan puts them, in the order of placement.
+def plan_polygons(plan: Plan, stones: StoneSet) -> tuple[tuple[Outlined, ...], ...]:
+    """Return every stone, its wedges after it, where the plan puts them, in the order of placement.
 
     Corners (n, 2) are in the wall frame, source px, counter-clockwise and not closed.  A stone is
     its outline, also when the plan was made on the raster; what overlaps is not pushed apart. Steps
@@ -34,7 +32,7 @@ def plan_polygons(plan: Plan, stones: StoneSet) -> tuple[PolygonGroup, ...]:
     exact = settings.geometry == "exact"
     outline_px = settings.settle.outline_px if exact else OUTLINE_TOLERANCE_PX
     site = plan_site(plan)
-    found: list[PolygonGroup] = []
+    found: list[tuple[Outlined, ...]] = []
     used: set[int] = set()
     for steps in grouped(plan.steps)[0]:
         group = []

@@ -12,6 +12,7 @@ from drystone.drawing.words.content import number
 from drystone.errors import counted
 from drystone.kernels.polygons import Points
 from drystone.model.builder import BuilderErrors
+from drystone.model.outlines import Outlined
 from drystone.model.plan import Plan, Point
 from drystone.model.steps import Problem
 from drystone.model.stone import StoneSet
@@ -21,7 +22,6 @@ from drystone.search.closed_loop import ClosedRun
 from drystone.search.rehearsal import Groups, RehearsalRun
 from drystone.verify.check import CheckReport
 from drystone.verify.claims import check_engine
-from drystone.verify.outlines import PolygonGroup
 
 PICTURE = "check.png"  # beside a plan of which something fails
 NOT_BUILT = "not built there, as a step of the plan places nothing"
@@ -137,7 +137,7 @@ class Checked:
     plan: Plan
     stones: StoneSet
     report: CheckReport
-    groups: Sequence[PolygonGroup]
+    groups: Sequence[Sequence[Outlined]]
     asked_physics: bool = False
     physics: PhysicsCard | None = None
 

@@ -10,8 +10,6 @@ from drystone.selection.algorithm2 import TIE_DIGITS, Action, SelectionSettings,
 from drystone.selection.policies.settings import PolicySettings
 from drystone.selection.policy import Offer
 
-Filter = Callable[[Sequence[Offer]], list[Offer]]
-
 
 class Random:
     """Any action after which the wall stands, all with the same chance."""
@@ -69,7 +67,7 @@ class Sieve:
     A filter that nothing passes is left out, so there is always a choice.
     """
 
-    filters: Sequence[Filter]
+    filters: Sequence[Callable[[Sequence[Offer]], list[Offer]]]
 
     def choose(self, candidates: Sequence[Offer], rng: np.random.Generator) -> int:
         """See :class:`drystone.selection.policy.Policy`."""

@@ -21,9 +21,7 @@ PAPER = "paper"
 RULES = ("algorithm2", "score")
 """Values of `selection_rule` that are no policies."""
 
-Maker = Callable[[PolicySettings, SelectionSettings], Policy]
-
-BUILT_IN: Mapping[str, Maker] = {
+BUILT_IN: Mapping[str, Callable[[PolicySettings, SelectionSettings], Policy]] = {
     "random": lambda *_: Random(),
     "lowest": lambda *_: LOWEST,
     "scalarised": lambda settings, weights: scalarised(weights, settings.w_sf),
