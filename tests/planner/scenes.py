@@ -15,8 +15,8 @@ from drystone.model.wall import outlined
 from drystone.planner.deadline import Deadline
 from drystone.planner.events import Stopped
 from drystone.search.plan_result import finish as finished
-from drystone.settle.placing import settled_placement
 from drystone.settle import rest
+from drystone.settle.placing import settled_placement
 from drystone.settle.settings import SettleSettings
 from drystone.verify.check import check_plan
 
