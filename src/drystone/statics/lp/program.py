@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csc_array
 
+from drystone.kernels.cones import GROUND_BODY, cone_edges
 from drystone.statics.loads import Loads, tilting_table
-from drystone.statics.model import FREEDOMS, GROUND, Block, RigidBlockModel
+from drystone.statics.model import FREEDOMS, GROUND, RigidBlockModel
 from drystone.statics.result import LimitStatus, Mechanism
 
 Floats = NDArray[np.float64]
@@ -137,53 +138,32 @@ def assemble(
     moving = np.array(moves, bool).reshape(-1, 3)
     rows = np.full(moving.shape, -1, np.int32)
     rows[moving] = np.arange(np.count_nonzero(moving))
-    each = np.array([model.friction(interface) for interface in model.interfaces], float)
-    friction = each[model.contact_interfaces]
-    force, arm, blocks = _cone_edges(model, free, friction)
-
-    value = np.empty((len(force), 2, 3))
-    value[:, :, :2] = np.array([[1.0], [-1.0]]) * force[:, None, :]
-    arm = arm / units.length
-    value[:, :, 2] = arm[:, :, 0] * value[:, :, 1] - arm[:, :, 1] * value[:, :, 0]
+    bodies = dict.fromkeys((GROUND, *(block.id for block in model.blocks)), GROUND_BODY)
+    bodies |= {block.id: (i, *block.centroid) for i, block in enumerate(free)}
+    faces = model.interfaces
+    friction = [model.friction(face) for face in faces]
+    first, second, entries = cone_edges(
+        [(bodies[face.block], bodies[face.other]) for face in faces],
+        [face.normal for face in faces],
+        friction,
+        [face.points for face in faces],
+        units.length,
+    )
     # The last row, that of -1, is for what does not move.
-    index = np.vstack((rows, np.full(3, -1, np.int32)))[blocks]
+    index = np.vstack((rows, np.full(3, -1, np.int32)))[np.column_stack((first, second))]
     kept = index >= 0
 
     live = (loads.live[places] / unit)[moving]
     pushed = np.flatnonzero(live)
-    rhs = -(loads.dead[places] / unit)[moving]
-    entries = np.concatenate(([len(pushed)], kept.sum(axis=(1, 2))))
+    counts = np.concatenate(([len(pushed)], kept.sum(axis=(1, 2))))
     return EquilibriumProgram(
         block_ids=tuple(block.id for block in free),
         rows=rows,
-        start=np.concatenate(([0], np.cumsum(entries))).astype(np.int32),
+        start=np.concatenate(([0], np.cumsum(counts))).astype(np.int32),
         index=np.concatenate((pushed, index[kept])).astype(np.int32),
-        value=np.concatenate((live[pushed], value[kept])),
-        rhs=rhs,
-        friction=friction,
+        value=np.concatenate((live[pushed], entries.T.reshape(-1, 2, 3)[kept])),
+        rhs=-(loads.dead[places] / unit)[moving],
+        friction=np.array(friction, float)[model.contact_interfaces],
         length=units.length,
         weight=units.weight,
     )
-
-
-def _cone_edges(
-    model: RigidBlockModel, free: list[Block], friction: Floats
-) -> tuple[Floats, Floats, Ints]:
-    """List the two edges of the friction cone at every contact point, m in all.
-
-    Returned are the forces (m, 2) on the block that the normal points into; the arms (m, 2, 2) from
-    the centroids of that block and of the other one to the point, anything for the ground; and the
-    places (m, 2) of both in `free`, -1 for what does not move.
-    """
-    place = dict.fromkeys((GROUND, *(block.id for block in model.blocks)), -1)
-    place.update((block.id, i) for i, block in enumerate(free))
-    of_edge = np.repeat(model.contact_interfaces, 2)
-    points = [interface.points for interface in model.interfaces]
-    at = np.repeat(np.concatenate([np.empty((0, 2)), *points]), 2, axis=0)
-    pairs = [(place[i.block], place[i.other]) for i in model.interfaces]
-    blocks = np.array(pairs, np.int32).reshape(-1, 2)[of_edge]
-    normal = np.array([i.normal for i in model.interfaces], float).reshape(-1, 2)[of_edge]
-    tangent = np.column_stack((normal[:, 1], -normal[:, 0]))
-    along = np.repeat(friction, 2) * np.tile([1.0, -1.0], len(friction))
-    centroid = np.array([*(block.centroid for block in free), (0.0, 0.0)])
-    return normal + along[:, None] * tangent, at[:, None, :] - centroid[blocks], blocks
