@@ -29,8 +29,8 @@ cdef int meet(
 ) except -1 nogil
 cdef void copy(double *at, Py_ssize_t one, Py_ssize_t to) noexcept nogil
 cdef int add(
-    MeetingRows found, Py_ssize_t edge, Py_ssize_t facing, double start, int count, double x0,
-    double y0, double x1, double y1, double normal_x, double normal_y
+    MeetingRows found, Sides p, Py_ssize_t edge, Py_ssize_t facing, double start, double end,
+    double normal_x, double normal_y
 ) except -1 nogil
 cdef int facing_edges(
     Sides p, Py_ssize_t i, Sides q, Py_ssize_t j, double tolerance, MeetingRows found

@@ -274,12 +274,17 @@ def copy(at, one, to):
         at[NUMBERS * to + k] = at[NUMBERS * one + k]
 
 
-def add(found, edge, facing, start, count, x0, y0, x1, y1, normal_x, normal_y):
-    """Add a contact of one or two points; there is always room for one more."""
+def add(found, p, edge, facing, start, end, normal_x, normal_y):
+    """Add a contact along an edge, or at a point of it; there is always room for one more."""
     k: cython.Py_ssize_t = NUMBERS * found.count
     at: cython.p_double = found.at
-    at[k + EDGE], at[k + FACING], at[k + START], at[k + COUNT] = edge, facing, start, count
-    at[k + X0], at[k + Y0], at[k + X1], at[k + Y1] = x0, y0, x1, y1
+    at[k + EDGE], at[k + FACING], at[k + START] = edge, facing, start
+    at[k + COUNT] = 1.0 if start == end else 2.0
+    at[k + X0], at[k + Y0] = (
+        p.x[edge] + start * p.along_x[edge],
+        p.y[edge] + start * p.along_y[edge],
+    )
+    at[k + X1], at[k + Y1] = p.x[edge] + end * p.along_x[edge], p.y[edge] + end * p.along_y[edge]
     at[k + NORMAL_X], at[k + NORMAL_Y] = normal_x, normal_y
     found.count += 1
     if found.count + 1 >= found.room:
@@ -293,9 +298,6 @@ def facing_edges(p, i, q, j, tolerance, found):
     c: cython.double[6] = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0]
     part: cython.double[2] = [0.0, 0.0]
     low_first: cython.bint
-    count: cython.int = 2
-    ux: cython.double = p.along_x[i]
-    uy: cython.double = p.along_y[i]
     if not common(p, i, q, j, tolerance, c):
         return 0
     at_low = c[INSIDE] + c[SLOPE] * (c[LOW] - c[FIRST])
@@ -308,18 +310,12 @@ def facing_edges(p, i, q, j, tolerance, found):
         part[0] = part[1] = c[LOW] if low_first else c[HIGH]
     over = c[LAST] if low_first else p.length[i] - c[FIRST]
     share = min(max(0.5 + over / (2.0 * tolerance), 0.0), 1.0)
-    nx = share * -uy + (1.0 - share) * q.along_y[j]
-    ny = share * ux + (1.0 - share) * -q.along_x[j]
+    nx = share * -p.along_y[i] + (1.0 - share) * q.along_y[j]
+    ny = share * p.along_x[i] + (1.0 - share) * -q.along_x[j]
     length = sqrt(nx * nx + ny * ny)
     if not part[1] - part[0] > tolerance:
         part[0] = part[1] = (part[0] + part[1]) / 2.0
-        count = 1
-    return add(
-        found, i, j, part[0], count,
-        p.x[i] + part[0] * ux, p.y[i] + part[0] * uy,
-        p.x[i] + part[1] * ux, p.y[i] + part[1] * uy,
-        nx / length, ny / length,
-    )  # fmt: skip
+    return add(found, p, i, j, part[0], part[1], nx / length, ny / length)
 
 
 def corner_on_edge(p, i, q, j, tolerance, found):
@@ -329,9 +325,7 @@ def corner_on_edge(p, i, q, j, tolerance, found):
         return 0
     if common(p, before(p, i), q, j, tolerance, c) or common(p, i, q, j, tolerance, c):
         return 0
-    x: cython.double = p.x[i]
-    y: cython.double = p.y[i]
-    return add(found, i, j, 0.0, 1, x, y, x, y, q.along_y[j], -q.along_x[j])
+    return add(found, p, i, j, 0.0, 0.0, q.along_y[j], -q.along_x[j])
 
 
 def edge_on_corner(p, i, q, j, tolerance, found):
@@ -342,9 +336,7 @@ def edge_on_corner(p, i, q, j, tolerance, found):
         return 0
     if common(p, i, q, before(q, j), tolerance, c) or common(p, i, q, j, tolerance, c):
         return 0
-    x: cython.double = p.x[i] + start * p.along_x[i]
-    y: cython.double = p.y[i] + start * p.along_y[i]
-    return add(found, i, j, start, 1, x, y, x, y, -p.along_y[i], p.along_x[i])
+    return add(found, p, i, j, start, start, -p.along_y[i], p.along_x[i])
 
 
 def corner_on_corner(p, i, q, j, tolerance, found):
@@ -388,14 +380,12 @@ def corner_on_corner(p, i, q, j, tolerance, found):
     if not (along >= 0.0 or x * x + y * y <= tolerance * tolerance):
         return 0
     if place < 2:
-        x, y = p.x[i], p.y[i]
-        return add(found, i, face, 0.0, 1, x, y, x, y, q.along_y[face], -q.along_x[face])
+        return add(found, p, i, face, 0.0, 0.0, q.along_y[face], -q.along_x[face])
     if along > 0.0 and place == 3:
         start = along
     elif along > 0.0:
         edge, start = i_before, p.length[i_before] - along
-    x, y = p.x[edge] + start * p.along_x[edge], p.y[edge] + start * p.along_y[edge]
-    return add(found, edge, j, start, 1, x, y, x, y, -p.along_y[face], p.along_x[face])
+    return add(found, p, edge, j, start, start, -p.along_y[face], p.along_x[face])
 
 
 def set_back_by(size, tolerance, setback):
