@@ -19,7 +19,6 @@ from drystone.kernels.polygons import area_and_centroid, no_polygons, turn
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import GROUND, Block, Interface, RigidBlockModel
 from drystone_lab.pixels import exact_model, picture_of, tilted_wall
-from tests.naive.contacts import outlines_drawn_anew
 from tests.polygons import box_of, moved
 from tests.statics.walls import alphas, irregular, told
 from tests.strategies import repeatable
@@ -47,20 +46,6 @@ def test_areas_of_published_stones_are_those_of_their_pixels(data_dir):
         assert area(outlines[stone.id]) == pytest.approx(stone.area_px, rel=1e-3)
 
 
-@pytest.mark.parametrize("seed", range(3))
-def test_small_stones_share_their_joints_though_some_keep_their_pixel_edges(seed):
-    nodes = np.random.default_rng(seed).random((40, 2)) * (24, 36)
-    away = np.hypot(*(np.indices((24, 36))[..., None] - nodes.T[:, None, None]))
-    labels = away.argmin(axis=-1).astype(np.uint32) + 1
-    outlines = outlines_of_labels(labels)
-    shapes = [shapely.Polygon(outline) for outline in outlines.values()]
-    assert shapely.area(shapes).sum() == pytest.approx(shapely.union_all(shapes).area, abs=1e-6)
-    anew = outlines_drawn_anew(labels)
-    assert [(i, line.tolist()) for i, line in outlines.items()] == [
-        (i, line.tolist()) for i, line in anew.items()
-    ]
-
-
 def test_a_tilted_joint_is_one_edge_with_its_slope():
     row, col = np.mgrid[:60, :80]
     slope = np.tan(np.radians(7))
@@ -80,18 +65,20 @@ def test_a_stone_on_the_ground_has_a_flat_bed_to_its_toes():
     assert bed.points[:, 0] == pytest.approx([5.2, 54.7], abs=0.3)
 
 
-@pytest.mark.parametrize("seed", range(2))
-def test_neighbours_share_their_joints(seed):
-    labels = irregular(seed, 12, 90, 70)
+SMALL = [(irregular(seed, 40, 36, 24), n, 1.0) for seed, n in enumerate((299, 272, 341))]
+LARGE = [(irregular(seed, 12, 90, 70), 72, 1e-6) for seed in range(2)]
+
+
+@pytest.mark.parametrize(("labels", "corners", "gaps"), [*SMALL, *LARGE])
+def test_neighbours_share_their_joints_though_small_stones_keep_pixel_edges(labels, corners, gaps):
+    """No more of them than before: the corners of all are counted."""
     outlines = outlines_of_labels(labels)
-    inside = [e for o in outlines.values() for e in edges_of(o)]
-    backwards = {(b, a) for a, b in inside}
-    # What has no neighbour lies on the border of the picture; there are no gaps or overlaps.
-    for (x0, y0), (x1, y1) in set(inside) - backwards:
-        assert max(x0, x1) < 1.5 or min(x0, x1) > 88.5 or max(y0, y1) < 1.5 or min(y0, y1) > 68.5
-    assert sum(area(o) for o in outlines.values()) == pytest.approx(labels.size, abs=4)
-    shapes = [shapely.Polygon(o) for o in outlines.values()]
-    assert shapely.union_all(shapes).area == pytest.approx(sum(s.area for s in shapes), abs=1e-6)
+    shapes = [shapely.Polygon(outline) for outline in outlines.values()]
+    whole = shapely.union_all(shapes)
+    assert shapely.area(shapes).sum() == pytest.approx(whole.area, abs=1e-6)
+    assert shapely.Polygon(whole.exterior).area == pytest.approx(whole.area, abs=gaps)
+    assert whole.area == pytest.approx(labels.size, abs=4)
+    assert sum(map(len, outlines.values())) == corners
 
 
 @pytest.mark.parametrize("shape", [(1, 1), (2, 2), (1, 9), (2, 20), (3, 5), (20, 4)])
