@@ -300,7 +300,7 @@ def test_a_point_load_holds_the_block_down_it_acts_on():
 def test_the_gravity_factor_says_how_light_a_wall_may_be():
     block = boxes([0, 0, 1, 4])
     _, loads = load_case(LoadCase("gravity", 0.0, ("1@0,3:0.5,0",), (), None), block)
-    carried = load_range(block, loads, mechanism=True)
+    carried = load_range(block, loads)
     assert carried.least.alpha == pytest.approx(0.5 * 3 / (4 * 0.5))
     assert carried.least.certificate.holds
     assert carried.greatest.status is LimitStatus.UNBOUNDED
@@ -313,7 +313,7 @@ def test_a_settling_support_is_held_up_by_its_share(size, height):
     rows = [0, 0, 1, height], [3, 0, size, height], [0, height, 4, 1]
     model, loads = other_loads.support_settlement(boxes(*rows, fixed=(1, 2)), 2)
     assert not [i for i in model.interfaces if {i.block, i.other} == {2, GROUND}]
-    carried = load_range(model, loads, mechanism=True)
+    carried = load_range(model, loads)
     # The beam turns about the inner edge of the left support; the right one bears at x = 4.
     assert carried.least.alpha == pytest.approx(1 / 3)
     settling = carried.least.mechanism
@@ -352,7 +352,7 @@ def test_no_alpha_may_hold_a_wall_up():
     pulled = Loads(weight(model), np.array([[0, 0, 0], [0, -1, 0]]))
     assert load_range(model, pulled).greatest.alpha == pytest.approx(-400)
     pushed = Loads(weight(model), np.array([[1, 0, 0], [0, 0, 0]]))
-    none = load_range(model, pushed, mechanism=True)
+    none = load_range(model, pushed)
     assert none.least.status is none.greatest.status is LimitStatus.UNSTABLE
     assert none.least.certificate.holds
     assert none.least.message == "No alpha holds the blocks up."

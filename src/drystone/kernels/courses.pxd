@@ -60,7 +60,7 @@ cdef double lies(Scene s, Py_ssize_t stone, bint beside) noexcept nogil
 cdef int columns_of(Scene s, int pose) noexcept nogil
 cdef Py_ssize_t found_in(Scene s, int course, int i, int count, Py_ssize_t stone) noexcept nogil
 cdef void widen(Scene s, int first, int last) noexcept nogil
-cdef Py_ssize_t first_of(const int *lift, Py_ssize_t start, Py_ssize_t end) noexcept nogil
+cdef Py_ssize_t first_of(const int *lift, Py_ssize_t end) noexcept nogil
 cdef Py_ssize_t last_of(const int *lift, Py_ssize_t start, Py_ssize_t end) noexcept nogil
 cdef void drop(Scene s, int below, Py_ssize_t stone) noexcept nogil
 cdef void raise_tops(Scene s, int below, int old, int out) noexcept nogil

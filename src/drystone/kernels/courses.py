@@ -600,15 +600,15 @@ def widen(s, first, last):
         s.changed, s.unchanged = min(s.changed, first), max(s.unchanged, last)
 
 
-def first_of(lift, start, end):
-    """Return where a lift is largest, the first of equals."""
-    most = lift[start]
-    for i in range(start + 1, end):
+def first_of(lift, end):
+    """Return where a lift is largest before an end, the first of equals."""
+    most = lift[0]
+    for i in range(1, end):
         most = lift[i] if lift[i] > most else most
-    for i in range(start, end):
+    for i in range(end):
         if lift[i] == most:
             return i
-    return start
+    return 0
 
 
 def last_of(lift, start, end):
@@ -640,7 +640,7 @@ def drop(s, below, stone):
     s.rock[stone] = 0
     s.void[stone] = s.short_[stone] = 0.0
     if count > 1:
-        left, right = first_of(lift, 0, middle), last_of(lift, middle, count)
+        left, right = first_of(lift, middle), last_of(lift, middle, count)
         steep = (lift[right] - lift[left]) * SLOPE_ONE / (right - left)
         # Towards zero, as long numbers are divided.
         slope = cython.cast(cython.int, max(-s.steepest, min(steep, s.steepest)))
@@ -649,7 +649,7 @@ def drop(s, below, stone):
             for j in range(count):
                 lift[j] -= tilt >> SLOPE_BITS
                 tilt += slope
-            left, right = first_of(lift, 0, middle), last_of(lift, middle, count)
+            left, right = first_of(lift, middle), last_of(lift, middle, count)
         for j in range(count):
             total += lift[j]
         y = max(lift[left], lift[right])

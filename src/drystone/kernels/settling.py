@@ -66,6 +66,9 @@ SMALLEST = cython.declare(cython.double, 1e-6)
 # An overlap that shrinks so slowly that it would last for more steps is given up.
 APART = cython.declare(cython.double, 24.0)
 
+# The `corner` of placed polygons, px.
+CORNER = cython.declare(cython.double, 0.3)
+
 # A contact with a normal steeper than this supports.
 UPWARD = cython.declare(cython.double, 0.3)
 
@@ -174,20 +177,19 @@ def rest_margin(
     width: float,
     mu: float,
     tolerance: float,
-    corner: float = 0.3,
     steep: float = -1.0,
 ) -> float:
     """Return how far gravity may lean, over mu, until a placed polygon moves; at most 10.
 
     -1 when it does not rest.  Gaps up to the tolerance touch; the ends of the wall carry nothing.
-    `corner` and `steep` are those of :class:`SettlingRules`.
+    `steep` is that of :class:`SettlingRules`.
     """
     require_friction(mu)
     corners = np.ascontiguousarray(corners, np.float64)
     stone: MovingStone = stone_of(corners, polygon_edges(corners))
     x: cython.double = centroid[0]
     y: cython.double = centroid[1]
-    find_gaps(stone, heap_of(around, width), tolerance, corner)
+    find_gaps(stone, heap_of(around, width), tolerance, CORNER)
     arm: cython.double = arm_of(doubles(corners), stone.count, x, y)
     return firmness(stone, x, y, arm, mu, tolerance, steep)
 

@@ -30,7 +30,7 @@ def cfunc(item: Any) -> Any:
     return item
 
 
-cclass = inline = final = cfunc
+cclass = inline = cfunc
 
 
 class _Nogil:

@@ -83,10 +83,11 @@ def lateral_resistance(
     return resistance_between(program, least, greatest, model.mu, mechanism=mechanism)
 
 
-def load_range(
-    model: RigidBlockModel, loads: Loads, *, mechanism: bool = False, solver: Solver = "auto"
-) -> LoadRange:
-    """Find all alpha for which the blocks carry dead + alpha live; 0 need not be one of them."""
+def load_range(model: RigidBlockModel, loads: Loads, *, solver: Solver = "auto") -> LoadRange:
+    """Find all alpha for which the blocks carry dead + alpha live; 0 need not be one of them.
+
+    Mechanisms and forces at both ends come with them.
+    """
     if all(block.fixed for block in model.blocks):
         return LoadRange(_no_blocks("left"), _no_blocks("right"))
     program = assemble(model, loads)
@@ -94,10 +95,9 @@ def load_range(
     def end(direction: Direction, answer: Extreme) -> LimitResult:
         alpha = answer.alpha if answer.status is LimitStatus.OPTIMAL else None
         message = "No alpha holds the blocks up." if answer.status is LimitStatus.UNSTABLE else ""
-        wanted = program if mechanism else None
-        return _result(direction, answer, answer.status, wanted, alpha, message)
+        return _result(direction, answer, answer.status, program, alpha, message)
 
-    least, greatest = extremes(model, program, solver, mechanism=mechanism)
+    least, greatest = extremes(model, program, solver, mechanism=True)
     return LoadRange(end("left", least), end("right", greatest))
 
 

@@ -112,7 +112,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     counts = counted(len(model.blocks), "block")
     card: analysis.RangeCard
     if case.is_range:
-        found = load_range(model, loads, mechanism=True, solver=solver)
+        found = load_range(model, loads, solver=solver)
         card = analysis.RangeCard(
             wall, loads.name, {"least": found.least, "greatest": found.greatest}, sha256
         )
