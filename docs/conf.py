@@ -42,7 +42,7 @@ add_module_names = False
 nitpick_ignore_regex = [
     ("py:(class|exc)", ".*"),
     ("py:(mod|func|attr)", r"drystone\.(search|selection|statics|model)\..*"),
-    ("py:(func|attr)", "limit_load|nonassociative_load|stopped"),
+    ("py:(func|attr)", "limit_load|stopped"),
 ]
 
 sphinx_gallery_conf = {

@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from drystone.contacts.given import model_from_json
-from drystone.statics.flow.nonassociative import nonassociative_load
+from drystone.statics.flow.nonassociative import nonassociative_resistance
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.loads import Loads, point_load, weight
 from drystone.statics.model import RigidBlockModel
@@ -153,7 +153,7 @@ def predict(series: ShearSeries, loading: Loading) -> ShearForces:
     """
     model, loads = shear_wall(series, loading)
     associative = lateral_resistance(model, loads).right.alpha
-    without = nonassociative_load(model, "right", loads=loads).alpha
+    without = nonassociative_resistance(model, loads=loads).right.alpha
     return ShearForces(rounded(associative, 6), rounded(without, 6))
 
 

@@ -3,7 +3,10 @@ from pathlib import Path
 import pytest
 from PIL import Image
 
-from drystone.statics.flow.nonassociative import NonassociativeResult
+from drystone.statics.flow.nonassociative import (
+    NonassociativeResistance,
+    NonassociativeResult,
+)
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.result import LimitStatus
 from drystone_lab import shear
@@ -27,9 +30,10 @@ def quick():
 def tables():
     """Everything at one friction, without the slow answers without dilatancy."""
     with pytest.MonkeyPatch.context() as patch:
-        nothing = NonassociativeResult(LimitStatus.FAILED, "right")
+        sides = (NonassociativeResult(LimitStatus.FAILED, side) for side in ("left", "right"))
+        nothing = NonassociativeResistance(*sides, shear.FRICTION)
         patch.setattr(shear, "FRICTION_BAND", (shear.FRICTION,))
-        patch.setattr(shear, "nonassociative_load", lambda *_, **__: nothing)
+        patch.setattr(shear, "nonassociative_resistance", lambda *_, **__: nothing)
         return [table.records() for table in run(BenchSettings())]
 
 

@@ -21,7 +21,7 @@ import pytest
 from drystone.contacts.blocks import model_from_labels
 from drystone.contacts.given import model_from_json
 from drystone.statics.flow.flow_search import NonassociativeSettings
-from drystone.statics.flow.nonassociative import nonassociative_load, nonassociative_resistance
+from drystone.statics.flow.nonassociative import nonassociative_resistance
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.result import LimitStatus
 from drystone_lab.pixels import BRICK_PX, from_outlines, from_pixels, rasterised
@@ -83,9 +83,9 @@ def test_without_dilatancy(number):
 
 def test_descent_reaches_the_least_load_of_the_first_wall():
     without = replace(QUICK, patience=0)
-    first = nonassociative_load(WALLS[0].model, "left", settings=without)
+    first = nonassociative_resistance(WALLS[0].model, settings=without).left
     assert first.alpha > 0.6395
-    least = nonassociative_load(WALLS[0].model, "left", settings=QUICK)
+    least = nonassociative_resistance(WALLS[0].model, settings=QUICK).left
     assert least.alpha == pytest.approx(0.63898, abs=5e-6)
 
 

@@ -7,7 +7,7 @@ from drystone.contacts.blocks import model_from_labels
 from drystone.statics.flow import central_path, flow_search
 from drystone.statics.flow.central_path import CentralPath
 from drystone.statics.flow.flow_search import ContactRates, NonassociativeSettings
-from drystone.statics.flow.nonassociative import nonassociative_load, nonassociative_resistance
+from drystone.statics.flow.nonassociative import nonassociative_resistance
 from drystone.statics.lp.program import assemble
 from drystone.statics.result import LimitStatus
 from drystone_lab.statics_cases import WALLS, closed_forms
@@ -53,7 +53,7 @@ def test_paths_alone_find_the_least_known_loads_of_published_walls(wall, least):
 
 def test_a_path_that_turns_back_leads_to_a_lower_load_than_a_straight_one():
     model = model_from_labels(irregular(4, 18, 100, 70), 0.58).model
-    found = nonassociative_load(model, "left", settings=ONLY_PATHS)
+    found = nonassociative_resistance(model, settings=ONLY_PATHS).left
     assert found.method == "central path, closing 1"
     assert found.answers == pytest.approx((0.552872, 0.556732), abs=1e-6)
     assert found.check.holds
@@ -62,7 +62,7 @@ def test_a_path_that_turns_back_leads_to_a_lower_load_than_a_straight_one():
 def test_many_points_take_paths_first_and_then_few_rounds(monkeypatch):
     monkeypatch.setattr(flow_search, "MANY_POINTS", 10)
     monkeypatch.setattr(flow_search, "EFFORT", 5.0 * 166**2)
-    result = nonassociative_load(WALLS[0].model, "right")
+    result = nonassociative_resistance(WALLS[0].model).right
     assert result.method == "central path, closing 0"
     assert result.alpha == pytest.approx(0.63898, abs=5e-6)
     assert result.rounds == 2 + 5  # both paths close at once
@@ -71,7 +71,7 @@ def test_many_points_take_paths_first_and_then_few_rounds(monkeypatch):
 @pytest.mark.parametrize("covered", [False, True])
 def test_many_points_are_let_go_too(monkeypatch, covered):
     monkeypatch.setattr(flow_search, "MANY_POINTS", 0)
-    result = nonassociative_load(walls.between_piers(covered=covered), "right")
+    result = nonassociative_resistance(walls.between_piers(covered=covered)).right
     assert (result.status, result.method) == (LimitStatus.UNSTABLE, "let go")
     assert result.check.holds
 

@@ -37,7 +37,7 @@ Starts with fast slip ask for small normal forces, everywhere or in the head joi
 the lower solutions.  What an answer means: docs/analysis.md.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import astuple, dataclass, replace
 
 import numpy as np
@@ -45,7 +45,7 @@ import numpy as np
 from drystone.statics.failing.mechanism import kinematics
 from drystone.statics.flow.flow_search import FlowState, NonassociativeSettings, Search
 from drystone.statics.flow.release import fall_of, with_inertia
-from drystone.statics.limit import DIRECTIONS, lateral_resistance
+from drystone.statics.limit import lateral_resistance
 from drystone.statics.loads import Loads, tilting_table
 from drystone.statics.lp.program import EquilibriumProgram, Floats, assemble, units_of
 from drystone.statics.model import FREEDOMS, Direction, RigidBlockModel
@@ -157,24 +157,6 @@ class NonassociativeResistance(LateralResistance):
         return 0.0 if falls else self.value
 
 
-def nonassociative_load(
-    model: RigidBlockModel,
-    direction: Direction,
-    *,
-    loads: Loads | None = None,
-    settings: NonassociativeSettings | None = None,
-) -> NonassociativeResult:
-    """Find the least load at which the blocks can move by Coulomb's law without dilatancy.
-
-    It is "optimal" when forces and motion were found whose check holds: the least alpha of those
-    found, in bounded effort, an upper estimate of the least there is.  "unstable" when the blocks
-    do not stand under their dead load, or only without certainty: there are forces with which they
-    start to fall, or a motion that needs less than no load.  "unbounded" when no motion goes along
-    with the load.  "failed" when nothing was found.
-    """
-    return _results(model, (direction,), loads, settings)[0]
-
-
 def nonassociative_resistance(
     model: RigidBlockModel,
     *,
@@ -182,12 +164,22 @@ def nonassociative_resistance(
     settings: NonassociativeSettings | None = None,
     look: Callable[[], None] = lambda: None,
 ) -> NonassociativeResistance:
-    """Find the loads in both directions; see :func:`nonassociative_load`.
+    """Find the least loads at which the blocks can move by Coulomb's law without dilatancy.
+
+    A direction is "optimal" when forces and motion were found whose check holds: the least alpha of
+    those found, in bounded effort, an upper estimate of the least there is.  "unstable" when the
+    blocks do not stand under their dead load, or only without certainty: there are forces with
+    which they start to fall, or a motion that needs less than no load.  "unbounded" when no motion
+    goes along with the load.  "failed" when nothing was found.
 
     Parameters
     ----------
-    model, loads, settings
-        See there.
+    model : RigidBlockModel
+        Blocks and interfaces.
+    loads : Loads, optional
+        Dead and live loads; the tilting table unless given.
+    settings : NonassociativeSettings, optional
+        How much is tried.
     look : callable
         Called before every round; what it raises ends the search.
 
@@ -196,28 +188,20 @@ def nonassociative_resistance(
     NonassociativeResistance
         Its `value` is to F_LR what the flow rule without dilatancy makes of it.
     """
-    left, right = _results(model, DIRECTIONS, loads, settings, look)
-    return NonassociativeResistance(left, right, model.mu)
-
-
-def _results(
-    model: RigidBlockModel,
-    directions: Sequence[Direction],
-    loads: Loads | None,
-    settings: NonassociativeSettings | None,
-    look: Callable[[], None] = lambda: None,
-) -> list[NonassociativeResult]:
     both = lateral_resistance(model, loads)
-    ends = [both.left if direction == "left" else both.right for direction in directions]
+    ends = both.left, both.right
     if not both.stable or all(block.fixed for block in model.blocks):
-        return [NonassociativeResult(e.status, e.direction, message=e.message) for e in ends]
+        left, right = (NonassociativeResult(e.status, e.direction, message=e.message) for e in ends)
+        return NonassociativeResistance(left, right, model.mu)
     settings = settings or NonassociativeSettings()
     loads = loads or tilting_table(model)
     program = assemble(model, loads)
     falls = _released(model, loads, program, settings.rounds, look) if settings.let_go else None
     if falls is not None:
-        return [replace(falls, direction=direction) for direction in directions]
-    return [_searched(model, loads, program, end, settings, look) for end in ends]
+        left, right = (replace(falls, direction=end.direction) for end in ends)
+    else:
+        left, right = (_searched(model, loads, program, end, settings, look) for end in ends)
+    return NonassociativeResistance(left, right, model.mu)
 
 
 def _released(
