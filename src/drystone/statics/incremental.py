@@ -34,13 +34,7 @@ from drystone.statics.lp.extremes import Extreme, certified_extreme
 from drystone.statics.lp.highs import TOLERANCE, HighsSession, WarmBasis, WarmSession
 from drystone.statics.lp.program import EquilibriumProgram, Units, assemble
 from drystone.statics.model import GROUND, Addition, Direction, RigidBlockModel
-from drystone.statics.result import (
-    CERTIFIED,
-    Certificate,
-    LateralResistance,
-    LimitResult,
-    LimitStatus,
-)
+from drystone.statics.result import Certificate, LateralResistance, LimitResult, LimitStatus
 
 SIMPLEX = "simplex"
 LOCAL = "HiGHS simplex below the stone"
@@ -324,8 +318,7 @@ class LocalAnalysis(ConeAnalysis):
         rest = np.zeros(3 * (len(self.program.weights) + len(added.weights)))
         found = figures(self.program.cones, self.program.weights, added, alpha, forces, rest)
         proof = Certificate(found.residual, found.violation, lower=alpha)
-        carried = max(found.residual, found.violation) <= CERTIFIED
-        return Bound(alpha, proof, LOCAL) if carried else None
+        return Bound(alpha, proof, LOCAL) if proof.balances else None
 
 
 class WarmBases(NamedTuple):
@@ -370,12 +363,24 @@ class HighsAnalysis(IncrementalAnalysis):
     def _of(
         cls, model: RigidBlockModel, units: Units, program: EquilibriumProgram, starts: WarmBases
     ) -> "HighsAnalysis":
+        """Solve both ends from their bases."""
         model = model.forgetting()  # or every model would keep all those before it
-        result, bases, extremes = _solved_from(model, program, starts)
-        return cls(model, result, units, bases, extremes)
+        if not program.block_ids:
+            return cls(model, IncrementalResult(lateral_resistance(model)), units, starts)
+        session = WarmSession(program)
+        least = greatest = _warm_extreme(program, session, starts.greatest, 1)
+        lower = upper = session.basis()
+        if greatest.status is not LimitStatus.UNSTABLE:  # or no alpha holds the blocks up
+            least = _warm_extreme(program, session, starts.least, -1)
+            lower = session.basis()
+        result = IncrementalResult(resistance_between(program, least, greatest, model.mu))
+        if result.resistance.failed:
+            result = IncrementalResult(lateral_resistance(model), solved_cold=True)
+        bases = WarmBases(lower or starts.least, upper or starts.greatest)
+        return cls(model, result, units, bases, (least, greatest))
 
     def _result_with(self, model: RigidBlockModel) -> IncrementalResult:
-        return _solved_from(model, *self.prepared(model))[0]
+        return self._extended_to(model).result
 
     def _extended_to(self, model: RigidBlockModel) -> "HighsAnalysis":
         return self._of(model, self.units, *self.prepared(model))
@@ -393,26 +398,6 @@ class HighsAnalysis(IncrementalAnalysis):
             columns = np.concatenate(([True], np.repeat(stay, counts)))
             bases = WarmBases(*(basis.with_columns(columns) for basis in bases))
         return program, bases.appended(program)
-
-
-def _solved_from(
-    model: RigidBlockModel, program: EquilibriumProgram, starts: WarmBases
-) -> tuple[IncrementalResult, WarmBases, tuple[Extreme, Extreme] | None]:
-    """Solve both ends from their bases; return those they end with, and the least and greatest."""
-    if not program.block_ids:
-        return IncrementalResult(lateral_resistance(model)), starts, None
-    session = WarmSession(program)
-    least = greatest = _warm_extreme(program, session, starts.greatest, 1)
-    lower = upper = session.basis()
-    if greatest.status is not LimitStatus.UNSTABLE:  # or no alpha holds the blocks up
-        least = _warm_extreme(program, session, starts.least, -1)
-        lower = session.basis()
-    bases = WarmBases(lower or starts.least, upper or starts.greatest)
-    both = resistance_between(program, least, greatest, model.mu)
-    result = IncrementalResult(both)
-    if both.failed:
-        result = IncrementalResult(lateral_resistance(model), solved_cold=True)
-    return result, bases, (least, greatest)
 
 
 def _warm_extreme(

@@ -68,10 +68,14 @@ class Certificate:
         return abs(self.upper - self.lower) / max(1.0, abs(self.lower))
 
     @property
+    def balances(self) -> bool:
+        """True when the forces balance the loads within friction, up to `CERTIFIED`."""
+        return self.residual <= CERTIFIED and self.violation <= CERTIFIED
+
+    @property
     def holds(self) -> bool:
         """True when every error is at most `CERTIFIED`; never for what is no number."""
-        errors = (self.residual, self.violation, self.inadmissible)
-        if not all(error <= CERTIFIED for error in errors):
+        if not (self.balances and self.inadmissible <= CERTIFIED):
             return False
         if self.fall_work is not None:
             return self.fall_work > self.inadmissible

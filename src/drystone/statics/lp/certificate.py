@@ -4,7 +4,7 @@ import numpy as np
 
 from drystone.kernels.cones import Figures
 from drystone.statics.lp.program import EquilibriumProgram, Floats, Solution
-from drystone.statics.result import CERTIFIED, Certificate, LimitStatus
+from drystone.statics.result import Certificate, LimitStatus
 
 
 def certify(program: EquilibriumProgram, solution: Solution, sign: float) -> Certificate | None:
@@ -34,13 +34,6 @@ def certify(program: EquilibriumProgram, solution: Solution, sign: float) -> Cer
     ray = ray / abs(ray[0])
     residual, violation = _largest(np.abs(program.matrix @ ray)), _largest(-ray[1:])
     return Certificate(residual, violation, lower=sign * np.inf)
-
-
-def in_equilibrium(program: EquilibriumProgram, solution: Solution) -> bool:
-    """Say whether the forces of an optimal solution balance the loads within friction."""
-    columns, _ = solution.optimum
-    residual = _largest(np.abs(program.matrix @ columns - program.rhs))
-    return residual <= CERTIFIED and _largest(-columns[1:]) <= CERTIFIED
 
 
 def fall_certificate(program: EquilibriumProgram, velocity: Floats) -> Certificate:

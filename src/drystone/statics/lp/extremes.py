@@ -9,7 +9,7 @@ from typing import Literal, Protocol
 import numpy as np
 
 from drystone.model.settings import of_type
-from drystone.statics.lp.certificate import certify, in_equilibrium
+from drystone.statics.lp.certificate import certify
 from drystone.statics.lp.highs import HighsSession, WarmSession
 from drystone.statics.lp.program import EquilibriumProgram, Floats, Solution
 from drystone.statics.model import RigidBlockModel
@@ -160,7 +160,9 @@ def certified_extreme(program: EquilibriumProgram, session: Session, sign: float
     # Any live load is carried, if the dead load is carried at all.  A growing state of self-stress
     # tells nothing of that: of a wall that falls by itself an interior point method may find one.
     held = session.minimise(np.zeros(program.column_count))
+    proof = certify(program, held, sign)
     if held.status is LimitStatus.UNSTABLE:
-        return Extreme(held, certify(program, held, sign))
-    proven = held.status is LimitStatus.OPTIMAL and in_equilibrium(program, held)
-    return Extreme(solution, certify(program, solution, sign) if proven else None)
+        return Extreme(held, proof)
+    if held.status is not LimitStatus.OPTIMAL or proof is None or not proof.balances:
+        return Extreme(solution, None)
+    return Extreme(solution, certify(program, solution, sign))
