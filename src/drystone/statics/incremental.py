@@ -22,6 +22,7 @@ from math import isnan
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from drystone.kernels import simplex
 from drystone.kernels.cones import Figures, figures
@@ -267,13 +268,8 @@ class LocalAnalysis(ConeAnalysis):
         ends: tuple[PrimalDual, PrimalDual],
     ) -> "HighsAnalysis":
         """Let HiGHS know of a stone without solving: the bases get what carries it."""
-        bases = self.by_highs.bases
-        if len(added.closed):
-            stay = np.ones(1 + len(self.program.interfaces), bool)
-            stay[1 + added.closed] = False
-            bases = WarmBases(*(basis.with_columns(stay) for basis in bases))
         count, rows = len(added.cones.first), 3 * len(added.weights)
-        pairs = zip(bases, ends, strict=True)
+        pairs = zip(self.by_highs.bases.without(added.closed), ends, strict=True)
         bases = WarmBases(
             *(b.carrying(end.forces[len(end.forces) - count :], rows) for b, end in pairs)
         )
@@ -332,6 +328,14 @@ class WarmBases(NamedTuple):
         size = program.column_count, len(program.rhs)
         return WarmBases(self.least.appended(*size), self.greatest.appended(*size))
 
+    def without(self, closed: NDArray[np.integer]) -> "WarmBases":
+        """Return bases of a program without some edges of friction cones, by their numbers."""
+        if not len(closed):
+            return self
+        stay = np.ones(len(self.least.columns), bool)
+        stay[1 + closed] = False  # alpha comes first
+        return WarmBases(*(basis.with_columns(stay) for basis in self))
+
 
 @dataclass(frozen=True, eq=False)
 class HighsAnalysis(IncrementalAnalysis):
@@ -388,16 +392,11 @@ class HighsAnalysis(IncrementalAnalysis):
     def prepared(self, model: RigidBlockModel) -> tuple[EquilibriumProgram, WarmBases]:
         """Return the program of another model, and bases to start from, if it grew from this."""
         program = assemble(model, units=self.units)
-        added, bases = model.added, self.bases
+        added = model.added
         if added is None or added.base is not self.model:
             return program, WarmBases().appended(program)
-        if added.closed:
-            stay = np.ones(len(self.model.interfaces), bool)
-            stay[list(added.closed)] = False
-            counts = [2 * len(interface.points) for interface in self.model.interfaces]
-            columns = np.concatenate(([True], np.repeat(stay, counts)))
-            bases = WarmBases(*(basis.with_columns(columns) for basis in bases))
-        return program, bases.appended(program)
+        gone = np.isin(np.repeat(self.model.contact_interfaces, 2), added.closed)
+        return program, self.bases.without(np.flatnonzero(gone)).appended(program)
 
 
 def _warm_extreme(
