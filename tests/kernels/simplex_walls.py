@@ -45,7 +45,7 @@ def grown(labels, candidates=1, at_once=1):
         left = rest[placed:]
         groups = [left[:at_once], *([block] for block in left[at_once : at_once + candidates - 1])]
         models = [with_block(built, *group, whole=whole) for group in groups]
-        choices = [program.columns_of(model.added, model.mu) for model in models]
+        choices = [program.columns_of(model.added) for model in models]
         yield optima, choices
         answers = {sign: optima[sign].solved_with(choices[0]) for sign in SIGNS}
         if any(answer.status != simplex.OPTIMAL for answer in answers.values()):

@@ -438,7 +438,7 @@ def test_guesses_are_proved_and_most_stones_have_one(labels):
     for model in candidates:
         expected = lateral_resistance(model)
         sides = expected.right, expected.left
-        added = analysis.program.columns_of(model.added, model.mu)
+        added = analysis.program.columns_of(model.added)
         for told, one in ((proved, added), (turned, begun_at_the_other_body(added))):
             for (end, guess, found), sought in zip(guesses(analysis, one), sides, strict=True):
                 told.append((guess is not None, found is not None))
@@ -487,7 +487,7 @@ def test_contacts_that_closed_carry_nothing():
     program, told = analysis.program, []
     for model in candidates:
         stone = model.added
-        for end, guess, _ in guesses(analysis, program.columns_of(stone, model.mu)):
+        for end, guess, _ in guesses(analysis, program.columns_of(stone)):
             if guess is None or guess.alpha != end.alpha:
                 continue
             loaded = (guess.forces[: len(end.forces)] > 0) & (end.forces == 0)
@@ -495,7 +495,7 @@ def test_contacts_that_closed_carry_nothing():
                 if end.forces[program.interfaces == gone].any():
                     continue
                 closed = Addition(analysis.model, stone.blocks, stone.interfaces, (gone,))
-                without = guesses(analysis, program.columns_of(closed, model.mu))
+                without = guesses(analysis, program.columns_of(closed))
                 told += [bound for one, other, bound in without if one is end and other]
     assert None not in told
     assert len(told) > 5

@@ -288,7 +288,7 @@ class WedgeDraft:
         analysis, addition = self.analysis, model.added
         assert addition is not None  # noqa: S101 - it was made by adding
         if isinstance(analysis, SimplexAnalysis):
-            added = analysis.program.columns_of(addition, model.mu)
+            added = analysis.program.columns_of(addition)
             optimum = analysis.least if direction == "left" else analysis.greatest
             answer = optimum.solved_with(added) if added is not None else None
             if answer is not None and answer.status == OPTIMAL:

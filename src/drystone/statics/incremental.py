@@ -115,7 +115,7 @@ class ConeAnalysis(IncrementalAnalysis):
         addition = model.added
         if addition is None or addition.base is not self.model or not model.blocks:
             return None
-        added = self.program.columns_of(addition, model.mu)
+        added = self.program.columns_of(addition)
         return None if added is None else (addition, added)
 
 
@@ -212,7 +212,7 @@ class LocalAnalysis(ConeAnalysis):
         by_highs = HighsAnalysis.of(model, units)
         addition = Addition(RigidBlockModel((), (), model.mu), model.blocks, model.interfaces)
         program = ConeProgram.empty(units)
-        added = program.columns_of(addition, model.mu)
+        added = program.columns_of(addition)
         if added is None:
             return by_highs
         return cls._of(by_highs, by_highs.result, program.appended(addition, added))

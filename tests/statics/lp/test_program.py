@@ -85,7 +85,7 @@ def test_it_grows_as_the_other_program_does(labels):
         step = with_block(model, *blocks, whole=whole).added
         closed = (2, 5) if len(rest) % 7 == 4 and len(model.interfaces) > 5 else ()
         model = model.with_added(step.blocks, step.interfaces, closed)
-        cones = cones.appended(model.added, cones.columns_of(model.added, model.mu))
+        cones = cones.appended(model.added, cones.columns_of(model.added))
         program, count = assemble(model, units=UNITS), len(model.blocks)
         matrix = program.matrix.toarray()
         assert np.array_equal(naive.dense(cones.cones, count), matrix[:, 1:])

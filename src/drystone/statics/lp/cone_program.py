@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from drystone.kernels.cones import GROUND_BODY, Body, cone_edges
 from drystone.kernels.simplex import Added, Cones
 from drystone.statics.lp.program import Units
-from drystone.statics.model import GROUND, NO_SLIP, Addition, Block
+from drystone.statics.model import GROUND, Addition, Block
 
 Ints = NDArray[np.int32]
 
@@ -43,7 +43,7 @@ class ConeProgram:
         """Where the blocks are along the wall, in the order of their places."""
         return np.array([x for place, x, _ in self.bodies.values() if place >= 0])
 
-    def columns_of(self, addition: Addition, mu: float) -> Added | None:
+    def columns_of(self, addition: Addition) -> Added | None:
         """Return what a stone and its wedges add to the program.
 
         None when a block is fixed or held, or weighs nothing, or when an interface is not between a
@@ -62,7 +62,7 @@ class ConeProgram:
                 return None
             bodies.append((first, second))
             normals.append(interface.normal)
-            frictions.append(min(mu if interface.mu is None else interface.mu, NO_SLIP))
+            frictions.append(addition.base.friction(interface))
             points.append(interface.points)
         cones = Cones(*cone_edges(bodies, normals, frictions, points, self.units.length))
         weight = self.units.weight
