@@ -10,14 +10,14 @@ from hypothesis import strategies as st
 
 from drystone.contacts.blocks import model_from_labels
 from drystone.contacts.given import model_from_json
-from drystone.statics import squeeze
+from drystone.statics.flow import release
+from drystone.statics.flow.release import held_by_upright_faces
 from drystone.statics.joints import loose_blocks, slippery, with_head_friction
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.loads import Loads, growing_with_height, tilting_table, weight
 from drystone.statics.lp.extremes import Solver
 from drystone.statics.model import GROUND, Interface
 from drystone.statics.sensitivity import friction_curve, friction_sensitivity
-from drystone.statics.squeeze import held_by_upright_faces
 from drystone_lab.statics_cases import arch
 from tests.statics import walls
 from tests.statics.walls import JAMS, between_piers, boxes, brick_model, limit_load
@@ -155,9 +155,9 @@ def test_friction_of_pairs_stays_on_other_faces():
 
 def test_a_solver_that_gives_up_knows_nothing(monkeypatch):
     with monkeypatch.context() as patched:
-        patched.setattr(squeeze, "least_constraint", lambda *_: None)
+        patched.setattr(release, "least_constraint", lambda *_: None)
         assert held_by_upright_faces(between_piers()) is None
-    monkeypatch.setattr(squeeze, "lateral_resistance", lambda *_, **__: walls.gave_up())
+    monkeypatch.setattr(release, "lateral_resistance", lambda *_, **__: walls.gave_up())
     assert held_by_upright_faces(between_piers()) is None
 
 

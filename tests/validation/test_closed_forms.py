@@ -16,8 +16,8 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from drystone.statics.flow.nonassociative import nonassociative_resistance
+from drystone.statics.flow.release import held_by_upright_faces
 from drystone.statics.limit import lateral_resistance
-from drystone.statics.squeeze import held_by_upright_faces
 from drystone_lab import statics_cases
 from tests.statics.walls import alphas, boxes
 from tests.strategies import repeatable

@@ -22,6 +22,7 @@ from drystone.statics.flow.nonassociative import (
     NonassociativeResult,
     nonassociative_resistance,
 )
+from drystone.statics.flow.release import held_by_upright_faces
 from drystone.statics.joints import loose_blocks
 from drystone.statics.loads import Loads
 from drystone.statics.lp.extremes import Solver
@@ -29,7 +30,6 @@ from drystone.statics.model import GROUND, RigidBlockModel
 from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
 from drystone.statics.scatter.scatter import Scatter
 from drystone.statics.sensitivity import friction_sensitivity
-from drystone.statics.squeeze import held_by_upright_faces
 
 CLEARLY_LESS = 0.99
 """Share of the associative load multiplier; above it the mechanisms are mostly the same."""

@@ -27,18 +27,22 @@ of its area, which decides how fast it turns, and not which forces it can be hel
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.sparse import block_array, csc_array, diags_array
 
 from drystone.statics.flow import flow_search
 from drystone.statics.flow.flow_search import ContactRates
+from drystone.statics.joints import slippery
+from drystone.statics.limit import lateral_resistance
 from drystone.statics.loads import Loads
 from drystone.statics.lp.clarabel import least_constraint
+from drystone.statics.lp.extremes import Solver
 from drystone.statics.lp.highs import INFINITY, loaded, solved
-from drystone.statics.lp.program import EquilibriumProgram, Floats
+from drystone.statics.lp.program import EquilibriumProgram, Floats, assemble
 from drystone.statics.model import RigidBlockModel
+from drystone.statics.result import LimitStatus
 
 AT_REST = 1e-6
 """Blocks whose weight does no more work than this on their acceleration rest; in mean weights
@@ -157,3 +161,26 @@ class _States:
             return None
         moves, edges = answer[:rows], np.maximum(answer[rows:], 0.0).reshape(-1, 2)
         return Fall(moves, edges, self._masses * moves)
+
+
+def held_by_upright_faces(
+    model: RigidBlockModel, loads: Loads | None = None, *, solver: Solver = "auto"
+) -> tuple[int, ...] | None:
+    """Name the blocks that fall when upright faces have no friction (DESIGN 4.8), in their order.
+
+    Equilibrium asks only whether forces exist, not what would press such faces together
+    (docs/analysis.md).  Mechanisms of such a wall are many, but by Gauss's principle it starts to
+    fall, by associated flow, in one way only.  Returned are the blocks that move then: with these
+    held fast the rest stands.  None when a solver gave up.
+    """
+    smooth = replace(model, interfaces=slippery(model.interfaces, model.mu))
+    status = lateral_resistance(smooth, loads, solver=solver).left.status
+    if status is not LimitStatus.UNSTABLE:
+        return None if status is LimitStatus.FAILED else ()
+    program = assemble(smooth, loads)
+    edges = csc_array(program.matrix[:, 1:])
+    fall = least_constraint(masses(smooth, program), -program.rhs, edges, np.zeros(edges.shape[1]))
+    if fall is None:
+        return None
+    moves = np.abs(np.append(fall[0], 0.0)[program.rows]).max(axis=1)
+    return tuple(np.array(program.block_ids)[moves > CLEAR * moves.max()].tolist())
