@@ -11,7 +11,7 @@ cdef class State(MovingStone):
 cdef class Way:
     cdef p_double corners, edges
     cdef State here, there
-    cdef Py_ssize_t count, made, touching
+    cdef Py_ssize_t count, made
     cdef double arm, lean, stop, mu, clearance, tolerance, corner, near, far, most_turn, most_shift
     cdef double gain, overlap, steep, beyond, margin
     cdef bint sticks, turns

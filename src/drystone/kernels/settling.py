@@ -131,7 +131,6 @@ class Settling(NamedTuple):
     # how far gravity may lean until the stone moves, over mu; -1 when it does not rest
     margin: float
     steps: int
-    touching: int  # contacts
 
 
 @cython.cclass
@@ -218,9 +217,7 @@ def way_of(outline, edges, rules):
 def settling_of(way, status):
     """Return where what was let go has come to."""
     here: State = way.here
-    return Settling(
-        Status(status), here.x, here.y, here.turn, here.least, way.margin, way.made, way.touching
-    )
+    return Settling(Status(status), here.x, here.y, here.turn, here.least, way.margin, way.made)
 
 
 def let_go(way, heap, x, y, turn):
@@ -228,7 +225,7 @@ def let_go(way, heap, x, y, turn):
     here: State = way.here
     there: State = way.there
     status: cython.int = OVERLAPS
-    way.made, way.margin, way.touching = 0, -1.0, 0
+    way.made, way.margin = 0, -1.0
     here.x, here.y, here.turn = x, y, turn
     with cython.nogil:
         look(here, way, heap)
@@ -240,9 +237,6 @@ def let_go(way, heap, x, y, turn):
                 else:
                     # Whatever stopped it: does the stone rest?
                     way.margin = margin_of(way, here)
-                    for k in range(0, 7 * here.found, 7):
-                        if here.gaps[k + 5] <= way.tolerance and here.gaps[k + 6] != END:
-                            way.touching += 1
                     if way.margin >= 0.0:
                         status = RESTS
     return status
