@@ -1,4 +1,4 @@
-"""Courses against loops over columns, annealing against one that lays all anew, paths on pixels."""
+"""Courses against loops over columns, annealing against one that lays all anew."""
 
 from itertools import product
 
@@ -22,10 +22,10 @@ from drystone.kernels.course_types import (
 )
 from drystone.kernels.courses import anneal, evaluate, ways_up
 from drystone.kernels.polygons import area_and_centroid, turn
-from drystone.metrics import measure, paths
+from drystone.metrics import paths
 from drystone.search.course_task import poses_of
 from tests.naive.courses import all_terms, annealed
-from tests.polygons import box, random_polygon
+from tests.polygons import random_polygon
 from tests.strategies import repeatable
 
 QUARTERS = (0, 90, 180, 270)
@@ -217,48 +217,6 @@ def test_a_look_is_taken_every_round_and_what_it_raises_ends_the_annealing(
     assert (bits(found), same_cost) == (bits(unseen), cost)
     with pytest.raises(TimeoutError):
         anneal(*case, cooling._replace(evaluations=12), looked)
-
-
-RULES = Rules(Weights(*[1.0] * 17), 32, 0.0, 0, 0, 9, 1000.0)
-COLUMN_PX = 0.5
-
-
-def bond(shift_px, courses):
-    """Bricks of 60 x 20 px, each course shifted against that below."""
-    labels = np.zeros((20 * courses, 300), np.uint32)
-    for course in range(courses):
-        x = np.arange(300) + (course % 2) * shift_px
-        labels[20 * course : 20 * course + 20] = 1 + x // 60 + 10 * course
-    return labels
-
-
-def laid(rows):
-    """F_AV and F_AH of courses of bricks 20 px high, given by their widths, on nothing."""
-    widths = [width for row in rows for width in row]
-    corners = [turn(box(0, 0, width, 20), quarter) for width in widths for quarter in QUARTERS]
-    poses = poses_of(corners, np.array(widths, float) * 20, COLUMN_PX)
-    sizes = np.array([len(row) for row in rows], np.int32)
-    numbers = np.arange(len(widths), dtype=np.int32)
-    side, nothing = sum(rows[0]), (np.zeros((0, size), np.int32) for size in (2, STARTS, 3))
-    units = side * PIXEL_UNITS
-    ground = Ground(np.zeros(int(side / COLUMN_PX), np.int32), *nothing, units, units)
-    terms = evaluate(poses, Arrangement(numbers, 0 * numbers, sizes, sizes), ground, RULES).terms
-    return RULES.target - float(terms[-1, 16]), float(terms[-1, 15])
-
-
-@pytest.mark.parametrize("courses", [3, 4, 5])
-def test_bricks_are_judged_as_on_pixels(courses):
-    found = {}
-    for shift in (0, 10, 20, 30):
-        shifted = [60 - shift, 60, 60, 60, 60, shift] if shift else [60] * 5
-        across, along = laid([shifted if i % 2 else [60] * 5 for i in range(courses)])
-        measured = measure.measure_labels(bond(shift, courses))
-        # Joints are two px wide on pixels: corners are cut.
-        cut = 100 * 4 * courses / (20 * courses)
-        assert measured.F_AV - 1 <= across <= measured.F_AV + cut
-        assert measured.F_AH - 0.1 <= along <= measured.F_AH + 1.5
-        found[shift] = across
-    assert found[0] < found[10] < found[20] < found[30]
 
 
 def test_starts_are_those_of_the_metrics_and_there_is_room_for_all():

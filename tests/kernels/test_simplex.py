@@ -19,7 +19,6 @@ from tests.kernels.simplex_walls import (
     grown,
     needs_kernel,
     variants,
-    with_columns,
 )
 from tests.naive import simplex as naive
 from tests.naive.columns import program
@@ -241,20 +240,6 @@ def spoilt(optimum, **arrays):
 
 def with_inverse(optimum, inverse):
     return spoilt(optimum, inverse=inverse, transposed=np.ascontiguousarray(inverse.T))
-
-
-def test_columns_that_nearly_repeat_do_not_go_in_circles():
-    """Pairs with pivots of 1e-11 to 1e-6 between them."""
-    optima, choices = list(grown(coursed(0, 6, 150)))[11]
-    rng = np.random.default_rng(5)
-    new = choices[0].cones
-    for amount in 10.0 ** rng.uniform(-11, -6, 70):
-        noise = 1.0 + amount * rng.standard_normal(new.entries.shape)
-        again = replace(new, entries=new.entries * noise)
-        for sign in SIGNS:
-            answer = optima[sign].solved_with(with_columns(choices[0], again))
-            assert answer.status == OPTIMAL
-            assert answer.alpha == pytest.approx(optima[sign].alpha, abs=1e-5)
 
 
 def test_lost_digits_are_noticed_and_made_good():
