@@ -260,10 +260,10 @@ def test_what_is_fixed_may_reach_below_the_ground():
 
 
 def test_points_of_an_interface_run_along_it():
-    three = {"between": [1, 0], "points": [[2, 0], [0, 0], [4, 0]], "normal": [0, 1]}
+    three = {"between": [1, 0], "points": [[2, 0], [0, 0], [4, 0]], "normal": [0, 2]}
     model = model_from_json({"blocks_xywh": [[0, 0, 4, 4]], "mu": 2, "interfaces": [three]})
     assert model.interfaces[0].points.tolist() == [[0, 0], [2, 0], [4, 0]]
-    assert model.interfaces[0].length == 4
+    assert (model.interfaces[0].length, model.interfaces[0].normal) == (4, (0, 1))
 
 
 @pytest.mark.parametrize(

@@ -23,8 +23,6 @@ from tests.statics import walls
 from tests.statics.walls import JAMS, between_piers, boxes, brick_model, limit_load
 from tests.strategies import repeatable
 
-PAIR = [[0, 0, 2, 1], [0, 1, 2, 1]]
-
 
 def test_head_joints_without_friction_weaken_a_bond_and_only_them():
     model = brick_model(6, 5, 1.0, 0.65)
@@ -35,30 +33,11 @@ def test_head_joints_without_friction_weaken_a_bond_and_only_them():
 
 
 def test_friction_of_a_pair_from_a_file():
-    data = {"blocks_xywh": PAIR, "mu": 0.9, "friction": [{"between": [0, 1], "mu": 0.2}]}
+    pair, friction = [[0, 0, 2, 1], [0, 1, 2, 1]], [{"between": [0, 1], "mu": 0.2}]
+    data = {"blocks_xywh": pair, "mu": 0.9, "friction": friction}
     model = model_from_json(data)
     assert {(i.block, i.other): i.mu for i in model.interfaces} == {(1, GROUND): 0.2, (2, 1): None}
-    data["friction"] = [{"between": [1, 2], "mu": 0.3}]
-    assert limit_load(model_from_json(data), "right").alpha == pytest.approx(0.3)
-
-
-def test_interfaces_from_a_file_are_taken_as_they_are():
-    data = {
-        "blocks_xywh": PAIR,
-        "mu": 0.9,
-        "interfaces": [
-            {"between": [1, 0], "points": [[0, 0], [2, 0]], "normal": [0, 2]},
-            {"between": [2, 1], "points": [[0.5, 1], [1.5, 1]], "normal": [0, 1], "mu": 0.8},
-        ],
-    }
-    model = model_from_json(data)
-    assert [i.normal for i in model.interfaces] == [(0, 1), (0, 1)]
-    # The upper block turns about x = 1.5: arm .5 at height .5 above the joint; mu is .8 there.
-    assert limit_load(model, "right").alpha == pytest.approx(0.8)
-    data["interfaces"][1]["mu"] = 5.0
-    assert limit_load(model_from_json(data), "right").alpha == pytest.approx(0.9)
-    data["mu"] = 5.0
-    assert limit_load(model_from_json(data), "right").alpha == pytest.approx(1.0)
+    assert limit_load(model, "right").alpha == pytest.approx(0.2)
 
 
 def test_blocks_that_nothing_carries():
