@@ -1,6 +1,6 @@
 """Outlines of the stones of a label image that share their joints (DESIGN 4.8, 4.9)."""
 
-from collections import Counter, defaultdict
+from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
 
@@ -41,28 +41,36 @@ def outlines_of_labels(labels: Labels) -> dict[int, Points]:
     such outline, as some of a few pixels, keeps its pixel edges.  Holes are filled, with whatever
     lies in them; of an id in several pieces the largest is taken.
     """
-    rings, junctions = _rings(labels), _junctions(labels)
+    rings = _rings(labels)
+    junctions = _junctions(labels)
     pieces = {block: _pieces(ring, junctions) for block, ring in rings.items()}
-    uses = Counter(_key(piece) for mine in pieces.values() for piece in mine)
+    users = defaultdict[RingPiece, list[int]](list)
+    for block, mine in pieces.items():
+        for piece in mine:
+            users[_key(piece)].append(block)
     ends = defaultdict[Node, list[tuple[RingPiece, int]]](list)  # which pieces end where
-    for piece in uses:
+    for piece in users:
         ends[piece[0]].append((piece, 0))
         ends[piece[-1]].append((piece, -1))
-    fits = {piece: fitted_lines(np.array(piece, float), OUTLINE_TOLERANCE_PX) for piece in uses}
-    while True:
-        drawn = {piece: _drawn(piece, ends, fits) for piece in uses}
-        outlines, blocky = dict[int, Points](), set[RingPiece]()
-        for block, mine in pieces.items():
-            keys = [_key(piece) for piece in mine]
-            free = [uses[key] == 1 and key in fits for key in keys]
-            outlines[block] = _assembled(mine, drawn, free, rings[block])
-            if not _is_sound(outlines[block], rings[block]):
-                # The shortest piece: two junctions close together are most often the reason.
-                blocky.update(sorted((key for key in keys if key in fits), key=len)[:1])
-        if not blocky:
-            return outlines
-        # What meets them is drawn anew; pixel edges may pass one corner twice, but never cross.
+    fits = {piece: fitted_lines(np.array(piece, float), OUTLINE_TOLERANCE_PX) for piece in users}
+    drawn, outlines, unsound = dict[RingPiece, Points](), dict[int, Points](), set[int]()
+    anew = set(users)
+    while anew:
+        drawn |= {piece: _drawn(piece, ends, fits) for piece in anew}
+        for block in {block for piece in anew for block in users[piece]}:
+            mine, ring = pieces[block], rings[block]
+            free = [len(users[_key(p)]) == 1 and _key(p) in fits for p in mine]
+            outlines[block] = _assembled(mine, drawn, free, ring)
+            unsound.discard(block)
+            if not _is_sound(outlines[block], ring):
+                unsound.add(block)
+        # The shortest piece first: two junctions close together are most often the reason.
+        keys = [sorted((_key(p) for p in pieces[block]), key=len) for block in unsound]
+        blocky = {next((key for key in mine if key in fits), None) for mine in keys} - {None}
         fits = {piece: fit for piece, fit in fits.items() if piece not in blocky}
+        # What meets them is drawn anew; pixel edges may pass one corner twice, but never cross.
+        anew = {piece for key in blocky if key for i in (0, -1) for piece, _ in ends[key[i]]}
+    return {block: outlines[block] for block in rings}
 
 
 def model_of_traced(
