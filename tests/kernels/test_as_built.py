@@ -268,21 +268,26 @@ def test_a_wedge_that_waits_for_its_stone_is_not_put_down_again():
     assert (wall.laid[5].x, len(wall.laid)) == (pytest.approx(20.0, abs=0.1), 1)
 
 
-def test_walls_are_built_as_by_the_twin():
-    """Bricks of many widths, so badly laid that some roll, some are held, and some fall."""
+@pytest.mark.parametrize(("taper", "narrowest"), [(0.0, 20.0), (8.0, 20.0), (4.0, 9.0)])
+def test_walls_are_built_as_by_the_twin(taper, narrowest):
+    """Bricks of many widths, so badly laid that some roll, some are held, and some fall.
+
+    Some stand between bricks whose sides slope, and push these aside.
+    """
     told = [0, 0, 0]
     for seed in range(20):
         rng = np.random.default_rng(seed)
         spots = [(row, k) for row in range(4) for k in range(4 - row)]
-        left, width = rng.uniform(-13.0, 13.0, 10), rng.uniform(20.0, 38.0, 10)
+        left, width = rng.uniform(-13.0, 13.0, 10), rng.uniform(narrowest, 38.0, 10)
         errors = BuilderErrors.of_precision(2.0 * HAND, 25.0)
         wall, twin = BARE, SlowWall(0.58, BARE.how)
         for block, ((row, k), x, across) in enumerate(zip(spots, left, width, strict=True)):
             corners = box(40.0 * k + 20.0 * row + x, 20.0 * row, across)
+            corners[2:, 0] += taper * np.array([-1.0, 1.0]) * (-1) ** block
             put = [(block, *errors.all_built(corners, stratified(rng, 1, 1)[0]))]
             laid = wall.put(put)
             wall = laid.loaded(block)
             twin = twin.put(put).loaded(block)
             assert places(wall) == about(twin)
             told[0 if wall.laid == laid.laid else 2 if lost(laid, wall) else 1] += 1
-    assert min(told) > 3, told
+    assert min(told) > 2, told

@@ -15,12 +15,32 @@ class Bearing(NamedTuple):
     x: float
     y: float
     below: int
+    normal_deg: float = 0.0  # from straight up, to the right
+
+    def leans(self, mu, way):
+        """Return how far a reaction may lean to the right (1) or left (-1): aside over up."""
+        if abs(self.normal_deg) > math.degrees(math.acos(0.3)):
+            return 4.0 * way
+        angle_deg = self.normal_deg + way * math.degrees(math.atan(mu))
+        furthest = math.degrees(math.atan(4.0))
+        return math.tan(math.radians(min(max(angle_deg, -furthest), furthest)))
+
+
+class Reaction(NamedTuple):
+    """What holds a block at a point: up, and to the right."""
+
+    at: Bearing
+    up: float
+    aside: float
 
 
 class Bed(NamedTuple):
     points: list  # that it bears on
     faced: list  # the same, with upright faces where its weight acts beside those
     below: frozenset  # whose the points are; without points, those that hold it
+
+
+    level: float = 0.0  # mean height of the points
 
 
 HELD = Bed([Bearing(-math.inf, 0.0, -1), Bearing(math.inf, 0.0, -1)], [], frozenset())
@@ -68,15 +88,16 @@ class SlowWall:
             built, around = self.laid[block], self.polygons().leading(place)
             found = meetings(built.corners, around, self.how(built.size).rules.tolerance)
             touched = sorted(
-                (Bearing(x, y, ids[other]), up)
-                for other, count, points, (_, up) in zip(*found, strict=True)
+                (Bearing(x, y, ids[other], math.degrees(math.atan2(aside, up))), up)
+                for other, count, points, (aside, up) in zip(*found, strict=True)
                 for x, y in points[:count]
             )
             points = faced = [point for point, up in touched if up >= 0.3]
             if not points or not points[0].x <= built.x <= points[-1].x:
                 faced = [point for point, up in touched if up > -0.3]
             below = {p.below for p in points} or {ids[other] for other in found.others}
-            self.beds[block] = Bed(points, faced, frozenset(below - {-1}))
+            level = sum(one.y for one in points) / max(1, len(points))
+            self.beds[block] = Bed(points, faced, frozenset(below - {-1}), level)
 
     def burden(self, blocks):
         some = set(blocks)
@@ -91,22 +112,24 @@ class SlowWall:
         for one in reversed(wall.laid):
             beneath |= wall.beds[one].below if one in beneath else set()
         for one in [i for i in wall.laid if i in beneath and i != block]:
-            if one not in wall.laid or wall.stays(one, wall.beds):
+            if one not in wall.laid or wall.stays(one, wall.beds, beneath):
                 continue
             faced = {i: bed._replace(points=bed.faced) for i, bed in wall.beds.items()}
             held = {i: HELD for i, bed in wall.beds.items() if bed is HELD}
-            if not wall.stays(one, {**faced, **held, one: wall.beds[one]}):
-                wall = wall.rolled(one)
+            if not wall.stays(one, {**faced, **held, one: wall.beds[one]}, {one}):
+                wall = wall.rolled(one, beneath)
         return wall
 
-    def stays(self, block, beds):
+    def stays(self, block, beds, beneath):
         near = self.how(self.laid[block].size).rules.tolerance
-        return stays(block, self.laid, beds, self.burden([block]), self.mu, near)
+        burden = self.burden(beneath & self.laid.keys())
+        return stays(block, self.laid, beds, burden, self.mu, near)
 
-    def rolled(self, block):
+    def rolled(self, block, beneath):
         """Let a block go under its load, and put down again what lies on it."""
         built, out = self.laid[block], self.burden([block])
-        _, x, y = load(block, self.laid, self.beds, out)
+        acting = self.burden(beneath & self.laid.keys())
+        _, x, y, _ = load(block, self.laid, self.beds, acting, self.mu)
         corners, below = built.corners - (x, y), self.polygons(out)
         edges, rules = polygon_edges(corners), self.how(built.size).rules
         for sticks in (True, False):
@@ -160,10 +183,10 @@ class SlowWall:
         if not all(is_near(wall.laid.get(i), one) for i, one in again.items()):
             return False
         wall.find_beds()
-        _, x, _ = load(block, wall.laid, wall.beds, wall.burden([block]))
+        _, x, *_ = load(block, wall.laid, wall.beds, wall.burden([block]), self.mu)
         on = wall.beds[block].points
         over = any(one.x <= x if end.angle > 0.0 else one.x >= x for one in on)
-        return over or wall.stays(block, wall.beds)
+        return over or wall.stays(block, wall.beds, {block})
 
 
 def is_near(one, other):
@@ -174,60 +197,103 @@ def is_near(one, other):
     return way <= 0.125 and abs(one.angle_deg - other.angle_deg) <= 6.0
 
 
-def load(block, laid, beds, burden):
-    """Return the weight of a block with its share of all that lies on it, and where that acts."""
-    size = laid[block].size
-    parts = [(size**2, laid[block].x, laid[block].y)]
-    for one in burden:
-        on = beds[one].points
-        if all(bearing.below != block for bearing in on):
+def above(block, beds, burden):
+    """Return what may bear on a block, or lean on it."""
+    return [i for i in burden if any(one.below == block for one in beds[i].points + beds[i].faced)]
+
+
+def load(block, laid, beds, burden, mu):
+    """Return the weight of a block with what lies on it, where that acts, and the push aside.
+
+    Where it acts, x, is on the level of its bed, and y is that of the weights.
+    """
+    own = laid[block]
+    parts = [Reaction(Bearing(own.x, own.y, -1), own.size**2, 0.0)]
+    for one in above(block, beds, burden):
+        parts += [held for held in reactions(one, laid, beds, burden, mu) if held.at.below == block]
+    whole, push = sum(part.up for part in parts), -sum(part.aside for part in parts)
+    level = beds[block].level
+    x = sum(p.up * p.at.x - p.aside * (p.at.y - level) for p in parts) / whole
+    return whole, x, sum(p.up * p.at.y for p in parts) / whole, push
+
+
+def reactions(block, laid, beds, burden, mu):
+    """Return what holds a block under its load: one or two reactions, then that of a face."""
+    bed = beds[block]
+    if not bed.points or bed is HELD:
+        return []
+    whole, x, _, push = load(block, laid, beds, burden, mu)
+    left, right = beside(bed.points, x)
+    if left is not right:
+        share = (right.x - x) / (right.x - left.x) if right.x > left.x else 1.0
+        ups = whole * share, whole * (1.0 - share)
+        # What the left one may give to the right, by its own friction and by that of the other.
+        own = [ups[0] * left.leans(mu, way) for way in (-1, 1)]
+        rest = [-push - ups[1] * right.leans(mu, way) for way in (1, -1)]
+        least, most = max(own[0], rest[0]), min(own[1], rest[1])
+        aside = sorted((least, -push * share, most))[1] if least <= most else (least + most) / 2
+        return [Reaction(left, ups[0], aside), Reaction(right, ups[1], -push - aside)]
+    faces = []
+    for face in bed.faced if bed.faced is not bed.points else ():
+        steep_deg = abs(face.normal_deg)
+        if abs(steep_deg - 90.0) >= math.degrees(math.asin(0.3)):
             continue
-        weight, x, _ = load(one, laid, beds, burden)
-        left, right = beside(on, x)
-        share = (right.x - x) / (right.x - left.x) if left.x <= x < right.x else 1.0
-        shares = [(left, share), (right, 1.0 - share)]
-        parts += [(weight * part, b.x, b.y) for b, part in shares if b.below == block]
-    whole = sum(weight for weight, _, _ in parts)
-    return whole, sum(w * x for w, x, _ in parts) / whole, sum(w * y for w, _, y in parts) / whole
+        if (x - left.x) * face.normal_deg >= 0.0:
+            continue
+        # Friction turns the reaction up, towards the block's own weight.
+        turned_deg = steep_deg - math.degrees(math.atan(mu))
+        aside = -math.copysign(math.sin(math.radians(turned_deg)), x - left.x)
+        up = math.cos(math.radians(turned_deg))
+        torque = (face.x - left.x) * up - (face.y - left.y) * aside
+        if torque * (x - left.x) > 0.0:
+            force = whole * (x - left.x) / torque
+            faces.append((abs(torque), Reaction(face, min(force * up, whole), force * aside)))
+    found = [max(faces, key=lambda one: one[0])[1]] if faces else []
+    up, aside = (sum(getattr(one, name) for one in found) for name in ("up", "aside"))
+    return [Reaction(left, whole - up, -push - aside), *found]
 
 
 def beside(points, x):
     """Return the points next to a load on both sides, beyond an end the same one twice."""
-    left = max((b for b in points if b.x <= x), key=lambda b: b.x, default=points[0])
-    right = min((b for b in points if b.x > x), key=lambda b: b.x, default=points[-1])
-    return left, right
+    if x <= points[0].x or x > points[-1].x:
+        end = points[0] if x <= points[0].x else points[-1]
+        return end, end
+    after = next(i for i, one in enumerate(points) if one.x >= x)
+    return points[after - 1], points[after]
 
 
 def stays(block, laid, beds, burden, mu, near):
     """Say whether a block bears its load, by what would hold it were it to roll about its edge."""
-    on = beds[block].points
+    on, level = beds[block].points, beds[block].level
     if not on:
         return False
-    whole, x, _ = load(block, laid, beds, burden)
+    whole, x, *_ = load(block, laid, beds, burden, mu)
     if on[0].x - near <= x <= on[-1].x + near:
         return True
     edge, way = (on[0], 1.0) if x < on[0].x else (on[-1], -1.0)
     torque = way * (edge.x - laid[block].x) * laid[block].size ** 2
-    for other in burden:
-        points = beds[other].points
-        here = [one for one in points if one.below == block]
-        if not here:
-            continue
-        weight, at, _ = load(other, laid, beds, burden)
-        left, right = beside(points, at)
-        for bears, held in ((left, right), (right, left)):
-            if bears.below != block:
+    for other in above(block, beds, burden):
+        found = reactions(other, laid, beds, burden, mu)
+        for bears in found:
+            if bears.at.below != block:
                 continue
-            point = bears
-            share = (at - held.x) / (bears.x - held.x) if bears.x != held.x else 0.5
-            share = share if left.x <= at <= right.x else 0.5
-            if held.below != block and bears.x != held.x:
+            torque += way * bears.aside * (bears.at.y - level)
+            point, up = bears.at, bears.up
+            held = next((one for one in found if one.at is not bears.at), bears)
+            between = len(found) == 2 and all(one.at in beds[other].points for one in found)
+            if between and held.at.below != block and point.x != held.at.x:
                 # Of all points on its side those that help: the ones towards the block's middle.
-                side = [b for b in here if (b.x - held.x) * (bears.x - held.x) > 0]
-                last = max(side, key=lambda b: way * b.x)
-                if abs(last.x - held.x) > abs(bears.x - held.x):
-                    point, share = last, (at - held.x) / (last.x - held.x)
-                lesser = min(share, 1.0 - share)
-                torque -= mu * weight * lesser * (point.y - edge.y)
-            torque += way * (edge.x - point.x) * weight * share
+                both, away = up + held.up, point.x - held.at.x
+                side = [
+                    one
+                    for one in beds[other].points
+                    if one.below == block and (one.x - held.at.x) * away > 0
+                ]
+                last = max(side, key=lambda one: way * one.x)
+                if abs(last.x - held.at.x) > abs(away):
+                    point, up = last, up * away / (last.x - held.at.x)
+                # So much the two can give each other, the block's own way back and against it.
+                back = min(-way * up * point.leans(mu, -way), way * (both - up) * held.at.leans(mu, way))
+                torque -= max(back, 0.0) * (point.y - edge.y)
+            torque += way * (edge.x - point.x) * up
     return torque <= near * whole

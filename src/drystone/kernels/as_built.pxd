@@ -11,6 +11,7 @@ cdef class Bed:
     cdef list kept
     cdef p_double rows
     cdef Py_ssize_t count
+    cdef double level
     cdef bint held, hangs
 
 
@@ -36,6 +37,12 @@ cdef bint is_on(Bed bed, Py_ssize_t k) noexcept
 cdef bint rests_on(Bed bed, p_uchar marks) noexcept
 cdef int mark_burden(BuiltWall wall, p_uchar marks) except -1
 cdef p_double loads_of(BuiltWall wall, p_uchar marks, Py_ssize_t unfaced, list kept) except NULL
+cdef void pass_on(
+    Bed bed, Py_ssize_t k, double up, double aside, p_uchar burden, p_double sums
+) noexcept
+cdef double leaning(Bed bed, Py_ssize_t k, double mu, double sign) noexcept
+cdef double reaction(Bed bed, Py_ssize_t k, double mu, bint upward) noexcept
+cdef double lever(Bed bed, Py_ssize_t k, Py_ssize_t a, double mu) noexcept
 cdef void find_carrying(Bed bed, bint faced, double x, Py_ssize_t *two) noexcept
 cdef int stays(BuiltWall wall, Py_ssize_t number, p_double loads, bint faced) except -1
 cdef BuiltWall rolled(BuiltWall wall, Py_ssize_t number, p_double loads)

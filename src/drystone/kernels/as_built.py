@@ -49,12 +49,20 @@ UPWARD = cython.declare(cython.double, 0.3)
 HALF = cython.declare(cython.double, 0.5)
 
 # The numbers of a row of a bed: a point, the number of the block below (-1 for the ground), and by
-# how much the normal goes up there.
+# how much the normal goes up and aside there.
 X = cython.declare(cython.Py_ssize_t, 0)
 Y = cython.declare(cython.Py_ssize_t, 1)
 BELOW = cython.declare(cython.Py_ssize_t, 2)
 UP = cython.declare(cython.Py_ssize_t, 3)
-ROW = cython.declare(cython.Py_ssize_t, 4)
+ASIDE = cython.declare(cython.Py_ssize_t, 4)
+ROW = cython.declare(cython.Py_ssize_t, 5)
+
+# The numbers of what acts on a block: its weight with all that lies on it, the moments of that
+# about x = 0 and y = 0, and the push to the right; the first moment has that of the push.
+LOAD = cython.declare(cython.Py_ssize_t, 4)
+
+# A reaction leans no further, aside over up.
+FURTHEST = cython.declare(cython.double, 4.0)
 
 
 class WayDown(NamedTuple):
@@ -352,15 +360,20 @@ def find_beds(wall):
             tolerance, 0.0,
         )  # fmt: skip
         touched: list = []
-        for other, count, points, (_, up) in zip(*[part.tolist() for part in found], strict=True):
+        for other, count, points, (aside, up) in zip(
+            *[part.tolist() for part in found], strict=True
+        ):
             below = wall.ids[wall.order[other]] if other >= 0 else -1
-            touched += [(x, y, below, up) for x, y in points[:count]]
+            touched += [(x, y, below, up, aside) for x, y in points[:count]]
         touched.sort()
         bears_on: list = [row for row in touched if row[3] >= UPWARD]
         if bears_on and bears_on[0][0] <= built.x <= bears_on[len(bears_on) - 1][0]:
             # Else friction on the others holds it, as it came to rest there.
             touched = bears_on
-        rows = [(x, y, -1 if below < 0 else wall.numbers[below], up) for x, y, below, up in touched]
+        rows = [
+            (x, y, -1 if below < 0 else wall.numbers[below], up, aside)
+            for x, y, below, up, aside in touched
+        ]
         wall.beds[number] = bed_of(rows, False)
     return 0
 
@@ -370,10 +383,17 @@ def bed_of(rows, held):
     bed: Bed = Bed()
     bed.kept, bed.count, bed.held, bed.hangs = [], len(rows), held, True
     bed.rows = kept_doubles(bed.kept, ROW * bed.count)
+    bed.level = 0.0
+    bearing: cython.Py_ssize_t = 0
     for i in range(bed.count):
-        k = ROW * i
-        bed.rows[k + X], bed.rows[k + Y], bed.rows[k + BELOW], bed.rows[k + UP] = rows[i]
-        bed.hangs = bed.hangs and not bears(bed, k, False)
+        for j in range(ROW):
+            bed.rows[ROW * i + j] = rows[i][j]
+        if bears(bed, ROW * i, False):
+            bed.hangs = False
+            bed.level += bed.rows[ROW * i + Y]
+            bearing += 1
+    if bearing:
+        bed.level /= bearing
     return bed
 
 
@@ -407,13 +427,14 @@ def mark_burden(wall, marks):
 def loads_of(wall, marks, unfaced, kept):
     """Return the loads of marked blocks, and of all that lies on them: weights, x and y.
 
-    A load is the weight of a block with what lies on it, and where that acts.  With a block that is
-    `unfaced`, all others bear on upright faces, too.
+    A load is the weight of a block with what lies on it, and where that acts; x is that on the
+    level of its bed, where a push has moved it.  With a block that is `unfaced`, all others bear on
+    upright faces, too.
     """
     two: cython.Py_ssize_t[2] = [0, 0]
     count: cython.Py_ssize_t = len(wall.ids)
     burden: cython.p_uchar = kept_flags(kept, count)
-    sums: cython.p_double = kept_doubles(kept, 3 * count)
+    sums: cython.p_double = kept_doubles(kept, LOAD * count)
     loads: cython.p_double = kept_doubles(kept, 3 * count + 1)
     for number in range(count):
         burden[number] = marks[number] if wall.places[number] >= 0 else 0
@@ -422,32 +443,93 @@ def loads_of(wall, marks, unfaced, kept):
         number = wall.order[place]
         if burden[number]:
             built = wall.built[number]
-            at = 3 * number
+            at = LOAD * number
             weight: cython.double = built.size**2
-            sums[at], sums[at + 1], sums[at + 2] = weight, weight * built.x, weight * built.y
+            sums[at], sums[at + 3] = weight, 0.0
+            sums[at + 1], sums[at + 2] = weight * built.x, weight * built.y
     for place in range(wall.size - 1, -1, -1):
         number = wall.order[place]
         if not burden[number]:
             continue
-        at = 3 * number
-        weight = loads[at] = sums[at]
-        x = loads[at + 1] = sums[at + 1] / weight
-        loads[at + 2] = sums[at + 2] / weight
+        at = LOAD * number
+        weight = loads[3 * number] = sums[at]
+        push: cython.double = sums[at + 3]
         bed: Bed = wall.beds[number]
-        find_carrying(bed, unfaced >= 0 and number != unfaced, x, two)
-        if two[0] < 0:
+        x: cython.double = (sums[at + 1] - push * bed.level) / weight
+        loads[3 * number + 1] = x
+        loads[3 * number + 2] = sums[at + 2] / weight
+        faced: cython.bint = unfaced >= 0 and number != unfaced
+        find_carrying(bed, faced, x, two)
+        a: cython.Py_ssize_t = two[0]
+        b: cython.Py_ssize_t = two[1]
+        if a < 0:
             continue
-        left, right = bed.rows[two[0] + X], bed.rows[two[1] + X]
-        share = (x - left) / (right - left) if right > left else 0.0
-        for i in range(2):
-            part = weight * share if i else weight * (1.0 - share)
-            k = two[i]
-            below = cython.cast(cython.Py_ssize_t, bed.rows[k + BELOW])
-            if below >= 0 and burden[below]:
-                sums[3 * below] += part
-                sums[3 * below + 1] += part * bed.rows[k + X]
-                sums[3 * below + 2] += part * bed.rows[k + Y]
+        left, right = bed.rows[a + X], bed.rows[b + X]
+        if a != b:
+            share = (x - left) / (right - left) if right > left else 0.0
+            first: cython.double = weight * (1.0 - share)
+            second: cython.double = weight - first
+            # Reactions lean alike, but no further than friction lets each of them.
+            aside: cython.double = -push * (1.0 - share)
+            least: cython.double = first * leaning(bed, a, wall.mu, -1.0)
+            least = max(least, -push - second * leaning(bed, b, wall.mu, 1.0))
+            most: cython.double = first * leaning(bed, a, wall.mu, 1.0)
+            most = min(most, -push - second * leaning(bed, b, wall.mu, -1.0))
+            aside = min(max(aside, least), most) if least <= most else 0.5 * (least + most)
+            pass_on(bed, a, first, aside, burden, sums)
+            pass_on(bed, b, second, -push - aside, burden, sums)
+            continue
+        if not faced:
+            # It leans on the upright face that holds it with the least force.
+            lean: cython.Py_ssize_t = -1
+            longest: cython.double = 0.0
+            for k in range(0, ROW * bed.count, ROW):
+                if abs(bed.rows[k + UP]) < UPWARD and (x - left) * bed.rows[k + ASIDE] < 0.0:
+                    arm = lever(bed, k, a, wall.mu)
+                    if (x - left) * arm > longest:
+                        lean, longest = k, (x - left) * arm
+            if lean >= 0:
+                force = weight * (x - left) / lever(bed, lean, a, wall.mu)
+                up = min(force * reaction(bed, lean, wall.mu, 1), weight)
+                aside = force * reaction(bed, lean, wall.mu, 0)
+                pass_on(bed, lean, up, aside, burden, sums)
+                weight, push = weight - up, push + aside
+        pass_on(bed, a, weight, -push, burden, sums)
     return loads
+
+
+def pass_on(bed, k, up, aside, burden, sums):
+    """Pass a reaction on to what is below a row."""
+    below = cython.cast(cython.Py_ssize_t, bed.rows[k + BELOW])
+    if below >= 0 and burden[below]:
+        at = LOAD * below
+        sums[at] += up
+        sums[at + 1] += up * bed.rows[k + X] - aside * bed.rows[k + Y]
+        sums[at + 2] += up * bed.rows[k + Y]
+        sums[at + 3] -= aside
+
+
+def leaning(bed, k, mu, sign):
+    """Return how far a reaction may lean to a side, 1 or -1: aside over up."""
+    up = bed.rows[k + UP]
+    upright = up - sign * mu * bed.rows[k + ASIDE]
+    if up < UPWARD or upright <= 0.0:
+        return sign * FURTHEST
+    return min(max((bed.rows[k + ASIDE] + sign * mu * up) / upright, -FURTHEST), FURTHEST)
+
+
+def reaction(bed, k, mu, upward):
+    """Return the part, aside or upward, of a reaction that goes up as far as friction lets it."""
+    rises = mu if bed.rows[k + ASIDE] < 0.0 else -mu
+    if upward:
+        return bed.rows[k + UP] - rises * bed.rows[k + ASIDE]
+    return bed.rows[k + ASIDE] + rises * bed.rows[k + UP]
+
+
+def lever(bed, k, a, mu):
+    """Return the arm of such a reaction about the point of a row."""
+    away, rise = bed.rows[k + X] - bed.rows[a + X], bed.rows[k + Y] - bed.rows[a + Y]
+    return away * reaction(bed, k, mu, 1) - rise * reaction(bed, k, mu, 0)
 
 
 def find_carrying(bed, faced, x, two):
@@ -526,7 +608,11 @@ def stays(wall, number, loads, faced):
         share = part * (at - from_x) / (inner_x - from_x)
         sign = 1.0 if left else -1.0
         moment += sign * (share * (edge_x - inner_x) - was * (edge_x - outer_x))
-        moment -= wall.mu * min(share, part - share) * (bed.rows[inner + Y] - edge_y)
+        hold = min(
+            -sign * share * leaning(bed, inner, wall.mu, -sign),
+            sign * (part - share) * leaning(bed, held, wall.mu, sign),
+        )
+        moment -= max(hold, 0.0) * (bed.rows[inner + Y] - edge_y)
     return moment <= near * loads[3 * number]
 
 
