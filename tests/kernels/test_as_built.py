@@ -176,6 +176,20 @@ def test_an_upright_face_carries_a_part_of_what_leans_on_it():
     assert after.laid[2] is before.laid[2]
 
 
+@pytest.mark.parametrize(("slope_deg", "falls"), [(20.0, False), (50.0, True)])
+@BOTH
+def test_a_stone_on_a_slope_pushes_what_else_bears_it(once, slope_deg, falls):
+    """It lies on a pier and on a post; a slope within the friction angle pushes nothing."""
+    rise = np.tan(np.radians(slope_deg))
+    pier = np.array([(-80, 0), (0, 0), (0, 20), (-25, 20 + 25 * rise), (-80, 20 + 25 * rise)])
+    post = box(18.0, 0.0, 4.0, 30.0)
+    low, high = (-2.0, 20.0 + 2.0 * rise), (-20.0, 20.0 + 20.0 * rise)
+    stone = np.array([low, (18.0, 30.0), (24.0, 30.0), (24.0, 60.0), (-20.0, 60.0), high])
+    groups = [[(i, corners)] for i, corners in enumerate((pier, post, stone))]
+    run = once(groups, NONE, np.random.default_rng(0))
+    assert any(end.fallen for end in run.stones) == falls
+
+
 def test_what_was_pushed_into_another_is_put_down_again():
     """A stone in balance is pushed into the peak that it has a notch for."""
     peak = [(1, np.array([(20.0, 0.0), (40.0, 0.0), (33.0, 14.0), (27.0, 14.0)]))]

@@ -39,7 +39,6 @@ class Bed(NamedTuple):
     faced: list  # the same, with upright faces where its weight acts beside those
     below: frozenset  # whose the points are; without points, those that hold it
 
-
     level: float = 0.0  # mean height of the points
 
 
@@ -293,7 +292,8 @@ def stays(block, laid, beds, burden, mu, near):
                 if abs(last.x - held.at.x) > abs(away):
                     point, up = last, up * away / (last.x - held.at.x)
                 # So much the two can give each other, the block's own way back and against it.
-                back = min(-way * up * point.leans(mu, -way), way * (both - up) * held.at.leans(mu, way))
+                forth = way * (both - up) * held.at.leans(mu, way)
+                back = min(-way * up * point.leans(mu, -way), forth)
                 torque -= max(back, 0.0) * (point.y - edge.y)
             torque += way * (edge.x - point.x) * up
     return torque <= near * whole
