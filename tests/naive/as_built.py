@@ -245,8 +245,8 @@ def reactions(block, laid, beds, burden, mu):
         up = math.cos(math.radians(turned_deg))
         torque = (face.x - left.x) * up - (face.y - left.y) * aside
         if torque * (x - left.x) > 0.0:
-            force = whole * (x - left.x) / torque
-            faces.append((abs(torque), Reaction(face, min(force * up, whole), force * aside)))
+            force = whole * min((x - left.x) / torque, 1.0 / up if up > 0.0 else math.inf)
+            faces.append((abs(torque), Reaction(face, force * up, force * aside)))
     found = [max(faces, key=lambda one: one[0])[1]] if faces else []
     up, aside = (sum(getattr(one, name) for one in found) for name in ("up", "aside"))
     return [Reaction(left, whole - up, -push - aside), *found]

@@ -143,7 +143,7 @@ def test_faces_that_touch_exactly_are_not_found_to_be_deep_in_each_other():
     for size in np.linspace(20, 300, 40):
         scene = EngineScene({**outlines, 3: rectangle(1000, 0, size, size)}, 0.58)
         table = TiltingTable(scene, ROUNDED, placed=(1,))
-        assert table.put_down(scene, 2) < 1e-6
+        assert table.put_down(scene, 2, 0.2) < 1e-6
 
 
 def test_the_tilt_starts_where_the_wall_came_to_rest():

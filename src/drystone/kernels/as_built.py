@@ -2,8 +2,10 @@
 
 A block comes to rest on others that do not move (:mod:`drystone.kernels.putting`).  Then its weight
 goes down through the wall: from each block by the lever to the two points it bears on left and
-right of where its load acts.  A block whose load acts beside all that it bears on is let go again
-under that load, unless it is held, and what lies on it is put down again.
+right of where its load acts.  Reactions lean no more than friction asks for: a block between slopes
+pushes others aside, and one that leans on an upright face pushes its seat.  A block whose load acts
+beside all that it bears on is let go again under that load, unless it is held, and what lies on it
+is put down again.
 """
 
 from __future__ import annotations
@@ -490,7 +492,10 @@ def loads_of(wall, marks, unfaced, kept):
                         lean, longest = k, (x - left) * arm
             if lean >= 0:
                 force = weight * (x - left) / lever(bed, lean, a, wall.mu)
-                up = min(force * reaction(bed, lean, wall.mu, 1), weight)
+                up = force * reaction(bed, lean, wall.mu, 1)
+                if up > weight:
+                    # The face bears all of it: more would lift the block off its seat.
+                    force, up = force * weight / up, weight
                 aside = force * reaction(bed, lean, wall.mu, 0)
                 pass_on(bed, lean, up, aside, burden, sums)
                 weight, push = weight - up, push + aside

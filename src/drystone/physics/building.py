@@ -36,6 +36,9 @@ class BuildSettings:
     # The blocks rest when no point of any has moved by more than this for so long.
     resting_move: float = 3e-4
     resting_time: float = 1.0
+    # A block is brought apart from what it overlaps by so much of its size at most; what is left
+    # the engine pushes apart.
+    apart_share: float = 0.2
     # Time after every stone.  When blocks still move then the next one comes.
     longest_rest: float = 10.0
     look_every: float = 0.25  # time between two looks at the blocks
@@ -109,8 +112,9 @@ def build_up(
     overlaps = dict.fromkeys(scene.shapes, 0.0)
     for number, group in enumerate(groups, 1):
         found_moved.append(watch.look(table))
-        for block, _ in reversed(group):  # wedges come before their stone
-            overlaps[block] = table.put_down(scene, block) * scene.length
+        for block, _ in (*group[1:], *group[:1]):  # wedges come before their stone
+            deep = table.put_down(scene, block, settings.apart_share)
+            overlaps[block] = deep * scene.length
         if not _rest(table, watch, settings):
             restless.append(number)
         if first_fall is None:

@@ -17,9 +17,8 @@ from drystone.physics.scene import EngineScene, EngineSettings
 GROUND_THICKNESS = 2.0
 """In mean block sizes; thick enough that nothing gets through."""
 
-APART, STEP, STEPS = 0.2, 0.02, 60
-"""A block is brought apart from what it overlaps by so much at most, by so much in a step (both
-over its size), in so many steps."""
+STEP, STEPS = 0.02, 60
+"""A block is brought apart from what it overlaps by so much of its size, so often."""
 
 
 class TiltingTable:
@@ -66,9 +65,10 @@ class TiltingTable:
         for part in convex_parts(corners):
             self._add_shape(body, part, scene.mu)
 
-    def put_down(self, scene: EngineScene, block: int) -> float:
+    def put_down(self, scene: EngineScene, block: int, most: float) -> float:
         """Place a free block, and bring it apart from what it overlaps there.
 
+        It goes by `most` of its size at most.
         Each step goes along the normal of the deepest contact.  Between two others it may not come
         free: it ends halfway, and the engine pushes all of them apart, slowly.  Returns how deep it
         lay in others, or in the ground.
@@ -90,7 +90,7 @@ class TiltingTable:
             if depth <= self._settings.slop:
                 break
             now = body.position - min(depth, STEP * size) * normal
-            if (now - start).length > APART * size:
+            if (now - start).length > most * size:
                 break
             body.position = now
             self._space.reindex_shapes_for_body(body)

@@ -45,7 +45,7 @@ class Planner:
     callbacks : Callbacks, optional
         Told of every :class:`Step`.
     workshop : Workshop, optional
-        The same stones and site, prepared before.
+        The same stones, site and settings, prepared before.
     profile : Profile, optional
         To go on with; told where the time goes.
 

@@ -61,7 +61,13 @@ SPOTS, APART, COLUMNS = 8, 0.3, 16
 OVER_TOP = 0.25
 """A stone of the heap may stand out over the plan by so much, mean sizes."""
 
-PATIENT = replace(IN_ENGINE, moved_share=FALLEN_SHARE, turned_deg=FALLEN_DEG, longest_rest=20.0)
+PATIENT = replace(
+    IN_ENGINE,
+    moved_share=FALLEN_SHARE,
+    turned_deg=FALLEN_DEG,
+    longest_rest=20.0,
+    apart_share=0.0,  # they come as they lie, all at once
+)
 TILT = Variation("as built", ROUNDED, TiltSettings(coarse=0.13, fine=0.02, longest_hold=20))
 """How a wall as it was built is let go and tilted: stones that rest at a few points go on to roll
 for a while, and errors of percents leave no digits to look for."""
