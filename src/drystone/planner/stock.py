@@ -22,7 +22,7 @@ class Stock:
     mean_area_px: float
     median_area_px: float  # of the stones themselves, whatever their pixels
     # of the box of each stone, by id: the shorter and the longer one
-    sides: Mapping[int, tuple[int, ...]] = field(default_factory=dict)
+    sides: Mapping[int, tuple[int, ...]] = field(default_factory=dict, compare=False)
 
     @classmethod
     def of(cls, initial: Iterable[PosedStone]) -> "Stock":
