@@ -515,7 +515,7 @@ def pass_on(bed, k, up, aside, burden, sums):
 
 
 def leaning(bed, k, mu, sign):
-    """Return how far a reaction may lean to a side, 1 or -1: aside over up."""
+    """Return how far a reaction leans to a side at most, aside over up; a face may also pull."""
     up = bed.rows[k + UP]
     upright = up - sign * mu * bed.rows[k + ASIDE]
     if up < UPWARD or upright <= 0.0:

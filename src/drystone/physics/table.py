@@ -68,10 +68,9 @@ class TiltingTable:
     def put_down(self, scene: EngineScene, block: int, most: float) -> float:
         """Place a free block, and bring it apart from what it overlaps there.
 
-        It goes by `most` of its size at most.
-        Each step goes along the normal of the deepest contact.  Between two others it may not come
-        free: it ends halfway, and the engine pushes all of them apart, slowly.  Returns how deep it
-        lay in others, or in the ground.
+        It goes by `most` of its size at most, each step along the normal of the deepest contact.
+        Between two others it may not come free: it ends halfway, and the engine pushes all of them
+        apart, slowly.  Returns how deep it lay in others, or in the ground.
         """
         self.place(scene, block)
         body = self._free()[-1]
