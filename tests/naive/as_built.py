@@ -169,17 +169,20 @@ class SlowWall:
         pose = (built.x, built.y, 0.0)
         edges, around = polygon_edges(corners), self.polygons()
         alone = settle(corners, edges, pose, around, 0.0, rules).status is Status.RESTS
-        return alone and all(is_near(after.laid.get(i), one) for i, one in again.items())
+        return alone and all(is_near(after.laid.get(i), one, 0.5) for i, one in again.items())
 
     def comes_back(self, block, built, at, again):
-        """Say whether its load acts over the edge again once a block has tipped about it."""
+        """Say whether its load acts over the edge again once a block has tipped a bit or more."""
+        return any(self.tips_back(block, built, at, again, part) for part in (0.05, 0.5))
+
+    def tips_back(self, block, built, at, again, part):
         corners, rules = built.corners - at[:2], self.how(built.size).rules
-        half = rules._replace(turn=rules.turn / 2, shift=rules.shift / 2)
-        end = settle(corners, polygon_edges(corners), at, self.polygons(), 0.0, half)
+        less = rules._replace(turn=part * rules.turn, shift=part * rules.shift)
+        end = settle(corners, polygon_edges(corners), at, self.polygons(), 0.0, less)
         tipped = moved_with(built, at[:2], (end.x, end.y), math.degrees(end.angle))
         wall = SlowWall(self.mu, self.how, {**self.laid, block: tipped}, self.beds)
         wall = wall.put(again.items())
-        if not all(is_near(wall.laid.get(i), one) for i, one in again.items()):
+        if not all(is_near(wall.laid.get(i), one, 1.0) for i, one in again.items()):
             return False
         wall.find_beds()
         _, x, *_ = load(block, wall.laid, wall.beds, wall.burden([block]), self.mu)
@@ -188,12 +191,12 @@ class SlowWall:
         return over or wall.stays(block, wall.beds, {block})
 
 
-def is_near(one, other):
-    """Less than half of a fall from each other; not so where one is gone."""
+def is_near(one, other, share):
+    """Within so much of a fall from each other; not so where one is gone."""
     if one is None:
         return False
     way = math.hypot(one.x - other.x, one.y - other.y) / one.size
-    return way <= 0.125 and abs(one.angle_deg - other.angle_deg) <= 6.0
+    return way <= 0.25 * share and abs(one.angle_deg - other.angle_deg) <= 12.0 * share
 
 
 def above(block, beds, burden):

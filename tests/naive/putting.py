@@ -5,7 +5,8 @@ import math
 import numpy as np
 import shapely
 
-from drystone.kernels.polygons import no_polygons
+from drystone.kernels.meetings import meetings
+from drystone.kernels.polygons import no_polygons, turn
 from drystone.kernels.settling import Status, settle
 
 ALONG = np.array((1.0, 0.0))
@@ -22,9 +23,30 @@ def put_down(outline, edges, at, around, rules, lifts, last, most, gap):
             pose, heap = (x + shift, y, 0.0), no_polygons().added(moved)
             found = settle(outline, edges, pose, heap, 0.0, by._replace(sticks=sticks))
             if found.status is Status.RESTS:
+                if leans(outline, found, heap, rules.tolerance):
+                    down = settle(
+                        outline, edges, found[1:4], heap, 0.0,
+                        by._replace(sticks=sticks, steep=0.3, turn=by.turn / 5, shift=by.shift / 5),
+                    )  # fmt: skip
+                    near = down.status is Status.RESTS and found.y - down.y <= by.shift / 5
+                    if near and not leans(outline, down, heap, rules.tolerance):
+                        found = down
                 return found, pushed
             room = room or found.status is not Status.OVERLAPS
     return None, {} if room else None
+
+
+def leans(outline, rest, around, tolerance):
+    """Say whether a block has its centroid beside all that it bears on."""
+    corners = turn(outline, math.degrees(rest.angle)) + np.array((rest.x, rest.y))
+    found = meetings(corners, around, tolerance)
+    xs = [
+        x
+        for count, points, (_, up) in zip(found.counts, found.points, found.normals, strict=True)
+        for x, _ in points[:count]
+        if up >= 0.3
+    ]
+    return not xs or not min(xs) <= rest.x <= max(xs)
 
 
 def squeezed_in(corners, others, most, gap):

@@ -50,6 +50,9 @@ UPWARD = cython.declare(cython.double, 0.3)
 # What moves by no more than so much of the way to a fall has stayed.
 HALF = cython.declare(cython.double, 0.5)
 
+# A block is tipped by so much of the way to a fall, to see where its load acts by then.
+TIPS = (0.05, 0.5)
+
 # The numbers of a row of a bed: a point, the number of the block below (-1 for the ground), and by
 # how much the normal goes up and aside there.
 X = cython.declare(cython.Py_ssize_t, 0)
@@ -624,13 +627,13 @@ def stays(wall, number, loads, faced):
 def comes_back(below, number, tipped, again):
     """Say whether a load acts over the edge again once a block has tipped about it.
 
-    What lies on the block is put down again, and moves by less than half of the way to a fall.
+    What lies on the block is put down again, and does not fall.
     """
     kept: list = []
     wall: BuiltWall = copied(below, [(below.ids[number], tipped)])
     add(wall, number, tipped)
     wall = laid_too(wall, again)
-    if not all(is_near(wall, wall.get(block), one) for block, one in again):
+    if not all(is_near(wall, wall.get(block), one, 1.0) for block, one in again):
         return False
     find_beds(wall)
     alone: cython.p_uchar = kept_flags(kept, len(wall.ids))
@@ -678,15 +681,16 @@ def rolled(wall, number, loads):
         if status == RESTS:
             break
     rests_alone: cython.bint = False
-    tipped = None
+    tipped = []
     if status not in (RESTS, OVERLAPS):
         own: Way = way_of(built.corners - (built.x, built.y), edges, rules)
         rests_alone = let_go(own, wall, built.x, built.y, 0.0) == RESTS
-        half = rules._replace(turn=HALF * rules.turn, shift=HALF * rules.shift)
-        way = way_of(corners, edges, half)
-        let_go(way, wall, x, y, 0.0)
-        end_x, end_y, turn_deg = way.here.x, way.here.y, math.degrees(way.here.turn)
-        tipped = moved_with(built, (x, y), (end_x, end_y), turn_deg)
+        for part in TIPS:
+            less = rules._replace(turn=part * rules.turn, shift=part * rules.shift)
+            way = way_of(corners, edges, less)
+            let_go(way, wall, x, y, 0.0)
+            end_x, end_y, turn_deg = way.here.x, way.here.y, math.degrees(way.here.turn)
+            tipped.append(moved_with(built, (x, y), (end_x, end_y), turn_deg))
     move_doubles(wall.boxes, 0, boxes, 0, 4 * wall.size)
     if status == RESTS and way.here.x == x and way.here.y == y and way.here.turn == 0.0:
         return wall
@@ -704,10 +708,11 @@ def rolled(wall, number, loads):
         (wall.ids[one], wall.built[one]) for one in lifted if one != number or status == OVERLAPS
     ]
     after: BuiltWall = laid_too(below, again)
-    if rests_alone and all(is_near(wall, after.get(block), one) for block, one in again):
+    if rests_alone and all(is_near(wall, after.get(block), one, HALF) for block, one in again):
         return wall  # what lies on it stays without it, so that it bears as little as it can
-    if tipped is not None and comes_back(below, number, tipped, again):
-        return wall
+    for one in tipped:
+        if comes_back(below, number, one, again):
+            return wall
     lost = [block for block, one in again if after.get(block) is None]
     if rest is not None and lost:
         # What finds no place where it was goes with the block.
@@ -727,14 +732,14 @@ def rolled(wall, number, loads):
     return after
 
 
-def is_near(wall: BuiltWall, one: Built | None, other: Built) -> bool:
-    """Say whether a block lies less than half of the way to a fall from where it lay."""
+def is_near(wall: BuiltWall, one: Built | None, other: Built, share: float) -> bool:
+    """Say whether a block lies within so much of the way to a fall from where it lay."""
     if one is None:
         return False
     rules = wall.how(one.size).rules
     turn_rad = math.radians(wrap_deg(one.angle_deg - other.angle_deg))
     way = math.hypot(one.x - other.x, one.y - other.y)
-    return max(way / rules.shift, abs(turn_rad) / rules.turn) <= HALF
+    return max(way / rules.shift, abs(turn_rad) / rules.turn) <= share
 
 
 def moved_with(one: Built, start: Pair, end: Pair, turn_deg: float) -> Built:

@@ -1,7 +1,7 @@
 from drystone.kernels.gaps cimport Body, Heap, MovingStone, measure, over, select
 from drystone.kernels.memory cimport kept_doubles, move_doubles, p_double
 from drystone.kernels.profiles cimport sweep_all
-from drystone.kernels.settling cimport Way, let_go
+from drystone.kernels.settling cimport State, Way, let_go
 
 
 cdef class Press:
@@ -15,6 +15,8 @@ cdef class Press:
 
 
 cdef int put_down(Press press, double x, double start_y, list lifts, list last) except -1
+cdef bint leans(Way way) noexcept
+cdef int go_down(Way way, Heap heap) except -1
 cdef Press press_of(Way way, Heap heap, double most, double gap)
 cdef int lie(Press press, dict before, dict now) except -1
 cdef void move(Press press, Py_ssize_t i, double shift) noexcept

@@ -3,6 +3,7 @@
 It is lifted until it overlaps nothing below.  There it is pressed in between its neighbours: moved
 aside where there is room, else these are pushed apart along their beds.  Then it goes down as
 friction lets it: it rolls about what carries it, and slides only where it does not come to rest so.
+What leans on an upright face then goes down along it, where a bed is near that bears it without.
 """
 
 from __future__ import annotations
@@ -16,11 +17,17 @@ if not cython.compiled:
     from drystone.kernels.gaps import Heap, MovingStone, measure, over, select
     from drystone.kernels.lists import kept_doubles, move_doubles
     from drystone.kernels.profiles import sweep_all
-    from drystone.kernels.settling import Way, let_go
+    from drystone.kernels.settling import State, Way, let_go
 
 RESTS = cython.declare(cython.int, 0)
 FALLS = cython.declare(cython.int, 1)
 OVERLAPS = cython.declare(cython.int, 2)
+
+# A block bears on what it touches where the normal of the contact goes up by at least so much.
+UPWARD = cython.declare(cython.double, 0.3)
+
+# What leans on a face goes down along it by no more than so much of the way to a fall.
+DOWN = cython.declare(cython.double, 0.2)
 
 # Two polygons lie beside each other when they share so much of the height of the lower one.
 BESIDE = cython.declare(cython.double, 0.3)
@@ -62,6 +69,8 @@ def put_down(press, x, start_y, lifts, last):
             status: cython.int = let_go(way, press.heap, x + shift, y, 0.0)
             if status == RESTS:
                 press.pushed = now
+                if leans(way):
+                    go_down(way, press.heap)
                 return RESTS
             room = room or status != OVERLAPS
             steps += way.made
@@ -70,6 +79,32 @@ def put_down(press, x, start_y, lifts, last):
                 least = lift - way.here.least - way.overlap
     lie(press, now, {})
     return FALLS if room else OVERLAPS
+
+
+def leans(way):
+    """Say whether the weight of what has come to rest acts beside all that it bears on."""
+    here: State = way.here
+    left: cython.bint = False
+    right: cython.bint = False
+    for k in range(0, 7 * here.found, 7):
+        if here.gaps[k + 5] <= way.tolerance and here.gaps[k + 2] >= UPWARD:
+            left = left or here.gaps[k + 3] <= here.x
+            right = right or here.gaps[k + 3] >= here.x
+    return not (left and right)
+
+
+def go_down(way, heap):
+    """Let what leans on a face go down as if faces had no friction; it stays where that is far."""
+    x: cython.double = way.here.x
+    y: cython.double = way.here.y
+    turn: cython.double = way.here.turn
+    steep, most_turn, most_shift = way.steep, way.most_turn, way.most_shift
+    way.steep, way.most_turn, way.most_shift = UPWARD, DOWN * most_turn, DOWN * most_shift
+    near: cython.bint = let_go(way, heap, x, y, turn) == RESTS and y - way.here.y <= way.most_shift
+    way.steep, way.most_turn, way.most_shift = steep, most_turn, most_shift
+    if not near or leans(way):
+        let_go(way, heap, x, y, turn)
+    return 0
 
 
 @cython.cclass
