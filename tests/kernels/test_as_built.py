@@ -53,7 +53,7 @@ def test_what_rests_nowhere_else_is_lifted_by_a_quarter_of_its_size_and_more():
     assert (rest.x, rest.y, rest.angle_deg) == pytest.approx((0.0, 18.2, 0.0), abs=0.1)
 
 
-@pytest.mark.parametrize(("lower", "turn_deg"), [(0.5, -1.15), (6.0, 0.0)])
+@pytest.mark.parametrize(("lower", "turn_deg"), [(0.5, -1.15), (2.0, 0.0)])
 def test_what_leans_on_an_upright_face_goes_down_to_a_bed_that_is_near(lower, turn_deg):
     """It lies on a post, and friction on a face that leans over holds it above the ledge."""
     post, ledge = box(0.0, 0.0, 15.0), box(30.0, 0.0, 10.0, 20.0 - lower)
@@ -61,6 +61,12 @@ def test_what_leans_on_an_upright_face_goes_down_to_a_bed_that_is_near(lower, tu
     stone = as_planned(np.array([(0.0, 20.03), (40.0, 20.03), (34.0, 40.0), (0.0, 40.0)]))
     rest, _ = put(stone, post, ledge, pier)
     assert rest.angle_deg == pytest.approx(turn_deg, abs=0.15)
+
+
+@pytest.mark.parametrize(("above", "ends"), [(0.7, 5.0), (1.0, 6.0)])
+def test_what_hangs_between_two_faces_goes_down_to_a_bed_that_is_near(above, ends):
+    rest, _ = put(as_planned(box(39.0, above, 22.0, 10.0)), box(0.0, 0.0), box(60.0, 0.0))
+    assert rest.y == pytest.approx(ends, abs=0.1)
 
 
 def test_what_was_put_down_askew_may_turn_back_past_the_plan():

@@ -50,7 +50,7 @@ UPWARD = cython.declare(cython.double, 0.3)
 # What moves by no more than so much of the way to a fall has stayed.
 HALF = cython.declare(cython.double, 0.5)
 
-# A block is tipped by so much of the way to a fall, to see where its load acts by then.
+# A block is tipped by at least so much of the way to a fall, to see where its load acts by then.
 TIPS = (0.05, 0.5)
 
 # The numbers of a row of a bed: a point, the number of the block below (-1 for the ground), and by
@@ -710,9 +710,8 @@ def rolled(wall, number, loads):
     after: BuiltWall = laid_too(below, again)
     if rests_alone and all(is_near(wall, after.get(block), one, HALF) for block, one in again):
         return wall  # what lies on it stays without it, so that it bears as little as it can
-    for one in tipped:
-        if comes_back(below, number, one, again):
-            return wall
+    if any(comes_back(below, number, put, again) for put in tipped):
+        return wall
     lost = [block for block, one in again if after.get(block) is None]
     if rest is not None and lost:
         # What finds no place where it was goes with the block.

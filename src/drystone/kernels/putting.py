@@ -3,7 +3,7 @@
 It is lifted until it overlaps nothing below.  There it is pressed in between its neighbours: moved
 aside where there is room, else these are pushed apart along their beds.  Then it goes down as
 friction lets it: it rolls about what carries it, and slides only where it does not come to rest so.
-What leans on an upright face then goes down along it, where a bed is near that bears it without.
+What leans on a face, or hangs, then goes down where a bed is near that bears it.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ OVERLAPS = cython.declare(cython.int, 2)
 # A block bears on what it touches where the normal of the contact goes up by at least so much.
 UPWARD = cython.declare(cython.double, 0.3)
 
-# What leans on a face goes down along it by no more than so much of the way to a fall.
+# What leans on a face goes down by no more than so much of how far it may go altogether.
 DOWN = cython.declare(cython.double, 0.2)
 
 # Two polygons lie beside each other when they share so much of the height of the lower one.
@@ -82,7 +82,7 @@ def put_down(press, x, start_y, lifts, last):
 
 
 def leans(way):
-    """Say whether the weight of what has come to rest acts beside all that it bears on."""
+    """Say whether what has come to rest hangs, or its weight acts beside all that it bears on."""
     here: State = way.here
     left: cython.bint = False
     right: cython.bint = False
@@ -94,7 +94,10 @@ def leans(way):
 
 
 def go_down(way, heap):
-    """Let what leans on a face go down as if faces had no friction; it stays where that is far."""
+    """Let what leans on a face go down as if upright faces had no friction.
+
+    It stays where that is far, or where it still leans then.  What leans over holds nothing.
+    """
     x: cython.double = way.here.x
     y: cython.double = way.here.y
     turn: cython.double = way.here.turn

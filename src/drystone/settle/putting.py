@@ -59,7 +59,7 @@ def settling_rules(size: float, mu: float, settle: SettleSettings) -> SettlingRu
         shift=FALLEN_SHARE * size,
         gain=GAIN * size,
         overlap=OVERLAP * size,
-        steep=-1.0,  # what is pressed in is held by upright faces too
+        steep=-1.0,  # what is pressed in is held by upright faces too, unless a bed is near
         beyond=math.inf,  # the ends of a wall are lines on the ground
         sticks=True,
         turns=True,
