@@ -21,7 +21,7 @@ from drystone.statics.incremental import (
     incremental_analysis,
 )
 from drystone.statics.limit import lateral_resistance
-from drystone.statics.local_update import local_update
+from drystone.statics.local_update import Near, local_update
 from drystone.statics.lp.highs import WARM, WarmSession
 from drystone.statics.lp.program import Units
 from drystone.statics.model import Addition
@@ -405,7 +405,7 @@ def guesses(analysis, added):
     program = analysis.program
     ends = analysis.greatest, analysis.least
     for end, opposite in (ends, ends[::-1]):
-        guess, found = local_update(program, end, opposite, added), None
+        guess, found = local_update(Near(program, added), end, opposite), None
         if guess is not None:
             answer = guess.alpha, guess.forces, guess.velocity
             measured = figures(program.cones, program.weights, added, *answer)

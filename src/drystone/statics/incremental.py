@@ -28,7 +28,7 @@ from drystone.kernels import simplex
 from drystone.kernels.cones import Figures, figures
 from drystone.kernels.simplex import Added, Answer, Optimum
 from drystone.statics.limit import MESSAGES, lateral_resistance, resistance_between
-from drystone.statics.local_update import PrimalDual, forces_at, local_update
+from drystone.statics.local_update import Near, PrimalDual, forces_at, local_update
 from drystone.statics.lp.certificate import certified_fall, optimum_of
 from drystone.statics.lp.cone_program import ConeProgram
 from drystone.statics.lp.extremes import Extreme, certified_extreme
@@ -248,12 +248,13 @@ class LocalAnalysis(ConeAnalysis):
             return self.by_highs.extended(model)
         addition, added = grown
         program = self.program.appended(addition, added)
-        near = [self._near(*ends, added) for ends in self._ends]
-        bounds = [bound for _, bound in near]
+        near = Near(self.program, added)
+        found = [self._found_near(near, *ends) for ends in self._ends]
+        bounds = [bound for _, bound in found]
         known = not any(bound is None or bound.falls for bound in bounds)
         if known and self.unsolved < UNSOLVED:
             result, after = _result_between(model, bounds), model.forgetting()
-            greatest, least = (end for end, _ in near if end is not None)
+            greatest, least = (end for end, _ in found if end is not None)
             starts = self._followed(result, after, added, (least, greatest))
             return LocalAnalysis(after, result, program, starts, greatest, least, self.unsolved + 1)
         by_highs = self.by_highs.extended(model)
@@ -280,35 +281,35 @@ class LocalAnalysis(ConeAnalysis):
         """Both ends, each with the opposite one."""
         return (self.greatest, self.least), (self.least, self.greatest)
 
-    def _near(
-        self, end: PrimalDual, opposite: PrimalDual, added: Added
+    def _found_near(
+        self, near: Near, end: PrimalDual, opposite: PrimalDual
     ) -> "tuple[PrimalDual | None, Bound | None]":
         """Look near a stone; no bound without a certificate that holds."""
-        near = local_update(self.program, end, opposite, added)
-        if near is None:
+        found = local_update(near, end, opposite)
+        if found is None:
             return None, None
-        return near, _bound_of(self.program, added, near, end.sign, LOCAL)
+        return found, _bound_of(self.program, near.added, found, end.sign, LOCAL)
 
     def _bounds(self, added: Added) -> "tuple[Bound, ...] | None":
         """Find the end that is weaker in the wall; of the other, whether it is no weaker (LLC).
 
         A fall alone says enough.  None where an end is not found near the stone.
         """
-        found = dict[int, Bound]()
+        near, found = Near(self.program, added), dict[int, Bound]()
         for end, opposite in sorted(self._ends, key=lambda ends: abs(ends[0].alpha)):
             weaker = found.get(-end.sign)
-            bound = None if weaker is None else self._carries(-weaker.alpha, end, opposite, added)
-            bound = bound or self._near(end, opposite, added)[1]
+            bound = None if weaker is None else self._carries(-weaker.alpha, end, opposite, near)
+            bound = bound or self._found_near(near, end, opposite)[1]
             if bound is None or bound.falls:
                 return None if bound is None else (bound,)
             found[end.sign] = bound
         return found[1], found[-1]
 
     def _carries(
-        self, alpha: float, end: PrimalDual, opposite: PrimalDual, added: Added
+        self, alpha: float, end: PrimalDual, opposite: PrimalDual, near: Near
     ) -> "Bound | None":
         """Prove that the wall with a stone carries an alpha, and maybe more towards one end."""
-        forces = forces_at(self.program, end, opposite, added, alpha)
+        forces, added = forces_at(near, end, opposite, alpha), near.added
         if forces is None:
             return None
         rest = np.zeros(3 * (len(self.program.weights) + len(added.weights)))

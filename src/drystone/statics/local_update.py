@@ -10,6 +10,7 @@ for the caller to certify them; what was not found, or not proved, is for anothe
 """
 
 from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -53,9 +54,61 @@ class PrimalDual(NamedTuple):
     velocity: Floats  # (3 n,): the mechanism, with sign live . v = 1; a fall when there is no alpha
 
 
-def local_update(
-    program: ConeProgram, end: PrimalDual, opposite: PrimalDual, added: Added
-) -> PrimalDual | None:
+@dataclass(frozen=True, eq=False)
+class Strip:
+    """What of a wall is within some reach of a stone, with the stone: a program of its own."""
+
+    places: NDArray[np.int32]  # of the bodies of the wall and of the stone; -1 outside
+    inside: NDArray[np.intp]  # columns of the wall: those on bodies of the strip alone
+    across: NDArray[np.intp]  # and those between a body of the strip and one outside
+    acted_on: NDArray[np.int32]  # of each column across, the body of the strip
+    acting: Floats  # (3, across): what it does there
+    matrix: csc_array  # of the columns inside, then the new ones
+
+    @classmethod
+    def of(cls, program: ConeProgram, added: Added, reach: float) -> "Strip":
+        """Take what lies so far beyond what the stone touches, in units of length."""
+        wall, new = program.cones, added.cones
+        places = _places_in_strip(program, added, reach)
+        place = np.append(places, np.int32(-1))  # that of the ground, which is -1 as well
+        first, second = place[wall.first], place[wall.second]
+        within = (first >= 0) & ((second >= 0) | (wall.second < 0))
+        across = ((first >= 0) | (second >= 0)) & ~within
+        within[added.closed] = across[added.closed] = False
+        inside, outwards = np.flatnonzero(within), np.flatnonzero(across)
+        on_first = first[outwards] >= 0
+        cones = Cones(
+            np.concatenate((first[inside], place[new.first])),
+            np.concatenate((second[inside], place[new.second])),
+            np.concatenate((wall.entries[:, inside], new.entries), axis=1),
+        )
+        acting = wall.entries[:, outwards]
+        return cls(
+            places,
+            inside,
+            outwards,
+            np.where(on_first, first[outwards], second[outwards]),
+            np.where(on_first, acting[:3], acting[3:]),
+            _matrix(cones, int(places.max()) + 1),
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class Near:
+    """A wall and one more stone."""
+
+    program: ConeProgram
+    added: Added
+    _strips: dict[float, Strip] = field(default_factory=dict)  # both ends ask for the same ones
+
+    def strip(self, reach: float) -> Strip:
+        """Return what lies so far beyond what the stone touches, in units of length."""
+        if reach not in self._strips:
+            self._strips[reach] = Strip.of(self.program, self.added, reach)
+        return self._strips[reach]
+
+
+def local_update(near: Near, end: PrimalDual, opposite: PrimalDual) -> PrimalDual | None:
     """Put together forces and a mechanism of a wall with one more stone.
 
     `end` is the one to be found, of the wall without the stone.  Where the mechanism of the wall,
@@ -63,25 +116,24 @@ def local_update(
     move as they will.  None when there is none, or when no strip is enough.  A fall comes without
     forces: none hold the stone.
     """
-    if not len(added.weights):
+    if not len(near.added.weights):
         return None
     for mechanism, reach in ((_mechanism, REACH), (_mechanism_near, FURTHER * REACH)):
-        moved = mechanism(program, end, added)
+        moved = mechanism(near, end)
         if moved is None:
             continue
         if np.isnan(moved.alpha) or end.sign * moved.alpha < -TOLERANCE:
             return moved._replace(forces=np.empty(0))
-        forces = forces_at(program, end, opposite, added, moved.alpha, (reach,))
+        forces = forces_at(near, end, opposite, moved.alpha, (reach,))
         if forces is not None:
             return moved._replace(forces=forces)
     return None
 
 
 def forces_at(
-    program: ConeProgram,
+    near: Near,
     end: PrimalDual,
     opposite: PrimalDual,
-    added: Added,
     alpha: float,
     reaches: Iterable[float] = (REACH, FURTHER * REACH),
 ) -> Floats | None:
@@ -90,10 +142,10 @@ def forces_at(
     Both ends are those of the wall without the stone.
     """
     carried = _carried(end, opposite, alpha)
-    if carried is None or not len(added.weights):
+    if carried is None or not len(near.added.weights):
         return None
     known = carried, end.forces > 0.0
-    found = (_strip_forces(program, added, alpha, known, reach) for reach in reaches)
+    found = (_strip_forces(near, alpha, known, reach) for reach in reaches)
     return next((forces for forces in found if forces is not None), None)
 
 
@@ -110,9 +162,10 @@ def _carried(end: PrimalDual, opposite: PrimalDual, alpha: float) -> Floats | No
     return share * end.forces + (1.0 - share) * opposite.forces
 
 
-def _mechanism(program: ConeProgram, end: PrimalDual, added: Added) -> PrimalDual | None:
+def _mechanism(near: Near, end: PrimalDual) -> PrimalDual | None:
     """Return alpha and a mechanism: of the stone alone, or that of the wall, extended."""
-    alone, work = _on_supports(program, end, added)
+    added = near.added
+    alone, work = _on_supports(near.program, end, added)
     stone = Added(added.weights, alone, NONE_CLOSED)
     answer = Optimum.of_nothing(end.sign).solved_with(stone)
     governs = answer.status == OPTIMAL and end.sign * (end.alpha - answer.alpha) > 0.0
@@ -132,13 +185,14 @@ def _mechanism(program: ConeProgram, end: PrimalDual, added: Added) -> PrimalDua
     return PrimalDual(end.sign, end.alpha, found[0], velocity)
 
 
-def _mechanism_near(program: ConeProgram, end: PrimalDual, added: Added) -> PrimalDual | None:
+def _mechanism_near(near: Near, end: PrimalDual) -> PrimalDual | None:
     """Return alpha and a mechanism in which bodies near the stone move as they will.
 
     All others move as in the mechanism of the wall, all slower or faster by one factor, or rest.
     Without any alpha it is a fall.  None where there is none, or alpha is greater than before.
     """
-    wall, place = program.cones, _places_in_strip(program, added, FURTHER * REACH)
+    program, added = near.program, near.added
+    wall, place = program.cones, near.strip(FURTHER * REACH).places
     built, count = len(program.weights), int(place.max()) + 1
     velocity = end.velocity.reshape(-1, 3)
     # All columns that act on a body that is near; what they do far off is work on the mechanism.
@@ -208,11 +262,7 @@ def _on_supports(program: ConeProgram, end: PrimalDual, added: Added) -> tuple[C
 
 
 def _strip_forces(
-    program: ConeProgram,
-    added: Added,
-    alpha: float,
-    known: tuple[Floats, NDArray[np.bool_]],
-    reach: float,
+    near: Near, alpha: float, known: tuple[Floats, NDArray[np.bool_]], reach: float
 ) -> Floats | None:
     """Find forces that carry a stone down through the strip of the wall below it, or None.
 
@@ -221,30 +271,18 @@ def _strip_forces(
     new ones.
     """
     carried, basic = known
-    wall, place = program.cones, _places_in_strip(program, added, reach)
-    first = place[wall.first]
-    second = np.where(wall.second < 0, -1, place[wall.second])
-    inside = (first >= 0) & ((second >= 0) | (wall.second < 0))
-    across = ((first >= 0) | (second >= 0)) & ~inside
-    inside[added.closed] = across[added.closed] = False
-    new_second = np.where(added.cones.second < 0, -1, place[added.cones.second])
-    cones = Cones(
-        np.concatenate((first[inside], place[added.cones.first])),
-        np.concatenate((second[inside], new_second)),
-        np.concatenate((wall.entries[:, inside], added.cones.entries), axis=1),
-    )
-    weights = np.concatenate((program.weights, added.weights))[place >= 0]
+    program, added, strip = near.program, near.added, near.strip(reach)
+    weights = np.concatenate((program.weights, added.weights))[strip.places >= 0]
     rhs = np.column_stack((-alpha * weights, weights, np.zeros(len(weights))))
-    for bodies, entries in ((first, wall.entries[:3]), (second, wall.entries[3:])):
-        at = across & (bodies >= 0)
-        np.subtract.at(rhs, bodies[at], (carried[at] * entries[:, at]).T)
-    starts = np.concatenate((basic[inside], np.zeros(len(added.cones.first), bool)))
-    found = least(np.zeros(len(starts)), _matrix(cones, len(rhs)), rhs.ravel(), starts)
+    for row, acting in enumerate(strip.acting * carried[strip.across]):
+        rhs[:, row] -= np.bincount(strip.acted_on, acting, len(weights))
+    starts = np.concatenate((basic[strip.inside], np.zeros(len(added.cones.first), bool)))
+    found = least(np.zeros(len(starts)), strip.matrix, rhs.ravel(), starts)
     if found is None:
         return None
-    count = np.count_nonzero(inside)
+    count = len(strip.inside)
     forces = carried.copy()
-    forces[inside] = found[0][:count]
+    forces[strip.inside] = found[0][:count]
     return np.concatenate((np.delete(forces, added.closed), found[0][count:]))
 
 

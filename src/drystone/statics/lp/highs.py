@@ -129,7 +129,7 @@ class WarmBasis:
 
     def carrying(self, forces: Floats | NDArray[np.bool_], rows: int) -> "WarmBasis":
         """Return the basis with more equations and unknowns, those with a force basic."""
-        columns = tuple(_BASIC if force > 0.0 else _AT_ZERO for force in forces.tolist())
+        columns = tuple(np.array((_AT_ZERO, _BASIC), object)[(forces > 0.0).astype(np.intp)])
         return WarmBasis(self.columns + columns, self.rows + (_AT_ZERO,) * rows, whole=False)
 
     def appended(self, columns: int, rows: int) -> "WarmBasis":
