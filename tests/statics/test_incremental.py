@@ -481,6 +481,27 @@ def test_who_knows_what_a_stone_changes(labels, alphas, solver):
 
 
 @needs_kernel
+@pytest.mark.parametrize("rounded", [-1e-15, 0.0, 1e-15])
+def test_a_load_that_goes_far_aside_leaves_the_alpha_of_a_slender_block(rounded):
+    """A stone on a lintel: its piers are beyond the first strip; alpha of a wall is rounded."""
+    labels = np.zeros((40, 106), np.uint32)
+    labels[20:, :10], labels[20:, 70:80], labels[:, 100:] = 1, 2, 3
+    labels[10:20, :80] = 4
+    labels[:10, 35:45] = 5
+    whole = model_from_labels(labels).model
+    *blocks, stone = whole.blocks
+    wall = incremental.LocalAnalysis.of(with_block(empty(), *blocks, whole=whole), PX)
+    added = wall.program.columns_of(with_block(wall.model, stone, whole=whole).added)
+    for end, opposite in ((wall.greatest, wall.least), (wall.least, wall.greatest)):
+        assert end.alpha == pytest.approx(0.15 * end.sign)
+        known = end._replace(alpha=end.alpha + rounded)
+        found = local_update(Near(wall.program, added), known, opposite)
+        assert found.alpha == known.alpha
+        measured = figures(wall.program.cones, wall.program.weights, added, *found[1:])
+        assert certified_bound(measured, found.alpha, end.sign, "") is not None
+
+
+@needs_kernel
 def test_contacts_that_closed_carry_nothing():
     """Such as would carry some of the stone, and nothing without it."""
     analysis, candidates = wall_at_once(coursed(1, 7, 150), 40)

@@ -22,11 +22,14 @@ from drystone.statics.lp.cone_program import NONE_CLOSED, ConeProgram
 from drystone.statics.lp.highs import TOLERANCE, WarmBasis, corrected, loaded, solved
 from drystone.statics.lp.program import Floats
 
-REACH = 2.0
-"""Half width of the strip beyond the centroids of what the stone touches, in units of length."""
+REACHES = (2.0, 4.0, 8.0)
+"""Half widths of strips beyond the centroids of what the stone touches, in units of length.
 
-FURTHER = 2.0
-"""So many times as wide is the second strip, where the first was not enough."""
+The next one is taken where the one before was not enough.
+"""
+
+NO_MORE = 1e-12
+"""What alpha of a wall with a stone may differ by from that of the wall, and counts as the same."""
 
 NO_WORK = 1e-11
 """Work of a stone on the mechanism of the wall that counts as none."""
@@ -118,13 +121,13 @@ def local_update(near: Near, end: PrimalDual, opposite: PrimalDual) -> PrimalDua
     """
     if not len(near.added.weights):
         return None
-    for mechanism, reach in ((_mechanism, REACH), (_mechanism_near, FURTHER * REACH)):
+    for mechanism, reaches in ((_mechanism, REACHES[:1]), (_mechanism_near, REACHES[1:])):
         moved = mechanism(near, end)
         if moved is None:
             continue
         if np.isnan(moved.alpha) or end.sign * moved.alpha < -TOLERANCE:
             return moved._replace(forces=np.empty(0))
-        forces = forces_at(near, end, opposite, moved.alpha, (reach,))
+        forces = forces_at(near, end, opposite, moved.alpha, reaches)
         if forces is not None:
             return moved._replace(forces=forces)
     return None
@@ -135,7 +138,7 @@ def forces_at(
     end: PrimalDual,
     opposite: PrimalDual,
     alpha: float,
-    reaches: Iterable[float] = (REACH, FURTHER * REACH),
+    reaches: Iterable[float] = REACHES,
 ) -> Floats | None:
     """Return forces that carry a wall with one more stone at some alpha; None where none are found.
 
@@ -192,7 +195,7 @@ def _mechanism_near(near: Near, end: PrimalDual) -> PrimalDual | None:
     Without any alpha it is a fall.  None where there is none, or alpha is greater than before.
     """
     program, added = near.program, near.added
-    wall, place = program.cones, near.strip(FURTHER * REACH).places
+    wall, place = program.cones, near.strip(REACHES[1]).places
     built, count = len(program.weights), int(place.max()) + 1
     velocity = end.velocity.reshape(-1, 3)
     # All columns that act on a body that is near; what they do far off is work on the mechanism.
@@ -228,6 +231,8 @@ def _mechanism_near(near: Near, end: PrimalDual) -> PrimalDual | None:
         held = csc_array(np.diag(rhs)[:, 1 : 3 * count : 3])
         matrix = csc_array(hstack((matrix, held)))
         found = least(np.append(0.0 * costs, np.ones(count)), matrix, rhs)
+    if abs(alpha - end.alpha) <= NO_MORE:
+        alpha = end.alpha
     if found is None or end.sign * (alpha - end.alpha) > 0.0:
         return None
     moved = np.zeros((built + len(added.weights), 3))
