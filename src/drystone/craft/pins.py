@@ -5,6 +5,7 @@ from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
+from numpy.typing import NDArray
 
 from drystone.craft.finding import Case, Evidence, Limit, worst_first
 from drystone.craft.masonry import Masonry
@@ -12,7 +13,7 @@ from drystone.kernels.polygons import Points
 from drystone.model.wedge_shape import WedgeRule, WedgeSettings, WedgeShape, open_sides
 from drystone.statics.joints import is_head_joint, loose_blocks
 from drystone.statics.lp.highs import HighsSession
-from drystone.statics.lp.program import assemble
+from drystone.statics.lp.program import Floats, assemble
 from drystone.statics.model import GROUND, RigidBlockModel
 from drystone.statics.result import LimitStatus
 
@@ -32,7 +33,7 @@ def pins(masonry: Masonry, limit: Limit) -> Evidence:
     wedges = sorted(set(masonry.wedge_ids))
     if not wedges:
         return Evidence(None, note="There is no wedge, or none is marked.")
-    resting = {wedge: resting_on(masonry, wedge) for wedge in wedges}
+    resting = resting_on(masonry)
     outside = [case for wedge in wedges for case in _outside(masonry, wedge, resting[wedge])]
     unfit = [case for wedge in wedges for case in _unfit(masonry, wedge, resting[wedge])]
     figures: dict[str, float | None] = {
@@ -89,16 +90,16 @@ def _frame(masonry: Masonry, wedge: int) -> tuple[Points, ...]:
     return (np.array([low, (high[0], low[1]), high, (low[0], high[1]), low]),)
 
 
-def resting_on(masonry: Masonry, wedge: int) -> tuple[int, ...]:
-    """Return the stones that lie on a wedge: next above it in a column, within a joint."""
-    found: set[int] = set()
+def resting_on(masonry: Masonry) -> dict[int, tuple[int, ...]]:
+    """Return the stones that lie on each wedge: next above it in a column, within a joint."""
+    found: dict[int, set[int]] = {wedge: set() for wedge in masonry.wedge_ids}
     widest = masonry.settings.joint * masonry.mean_height
     for runs in masonry.columns.runs:
         for one, other in pairwise(runs):
             near = other.begin - one.end <= widest
-            if one.id == wedge and other.id in masonry.stones and near:
-                found.add(other.id)
-    return tuple(sorted(found))
+            if one.id in found and other.id in masonry.stones and near:
+                found[one.id].add(other.id)
+    return {wedge: tuple(sorted(stones)) for wedge, stones in found.items()}
 
 
 def _outside(masonry: Masonry, wedge: int, resting: tuple[int, ...]) -> list[Case]:
@@ -161,8 +162,9 @@ def least_wedge_loads(
     if found.status is not LimitStatus.OPTIMAL:
         return found.status
     forces = found.optimum[0]
+    pressed, weights = _vertical(model)
     for wedge in sorted(wedge_ids):
-        costs = np.array([0.0, *_vertical(model, wedge)])
+        costs = np.append(0.0, np.where(pressed == wedge, weights, 0.0))
         # It cannot carry less than nothing.  Friction between steep faces may pull it down as hard
         # as one likes, so there need not be a least value.
         load = float(costs @ forces)
@@ -177,17 +179,15 @@ def least_wedge_loads(
     return loads
 
 
-def _vertical(model: RigidBlockModel, wedge: int) -> list[float]:
-    """Return what each edge of a friction cone presses onto a wedge from above."""
-    values: list[float] = []
+def _vertical(model: RigidBlockModel) -> tuple[NDArray[np.int64], Floats]:
+    """Return of each edge of a friction cone what it presses onto, and how hard; the ground too."""
+    pressed, weights = [], []
     for face in model.interfaces:
         normal, tangent = face.normal[1], -face.normal[0] * model.friction(face)
-        on_it = 0.0
-        if GROUND not in (face.block, face.other):
-            if face.other == wedge and normal > 0:
-                on_it = 1.0  # the force on what lies above is `block`'s
-            elif face.block == wedge and normal < 0:
-                on_it = -1.0
-        for _ in face.points:
-            values += [on_it * (normal + tangent), on_it * (normal - tangent)]
-    return values
+        # The force on what lies above is `block`'s.
+        lower, sign = (face.other, 1.0) if normal > 0 else (face.block, -1.0)
+        on_it = sign if normal and GROUND not in (face.block, face.other) else 0.0
+        edges = [on_it * (normal + tangent), on_it * (normal - tangent)]
+        weights += edges * len(face.points)
+        pressed += [lower] * 2 * len(face.points)
+    return np.array(pressed, np.int64), np.array(weights)

@@ -118,9 +118,9 @@ def wedge_sizes(masonry: Masonry, limit: Limit) -> Evidence:
     wedges = sorted(set(masonry.wedge_ids))
     if not wedges:
         return Evidence(None, note="There is no wedge, or none is marked.")
-    shares, cases = [0.0], []
+    shares, cases, resting = [0.0], [], resting_on(masonry)
     for wedge in wedges:
-        carried = resting_on(masonry, wedge)
+        carried = resting[wedge]
         if not carried:
             continue
         stone = min(carried, key=lambda i: (masonry.areas[i], i))

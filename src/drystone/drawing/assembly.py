@@ -199,7 +199,7 @@ class Assembly:
 
     def neighbours(self, part_id: int) -> tuple[int, ...]:
         """Return the ids that a part touches in the finished wall, ascending; 0 is the ground."""
-        return tuple(touched_by(part_id, self.model))
+        return tuple(self.model.touched_by(part_id))
 
     def before(self, part: Part) -> tuple[Part, ...]:
         """Return the parts that stand before this one is placed, in order."""
@@ -319,12 +319,6 @@ def assembly_of_result(result: "PlanResult", photo: Path | None = None) -> Assem
     model, resistance = scaled(result.model, factor), scaled_resistance(result.resistance, factor)
     thickness = _usual_thickness(parts)
     return Assembly(plan, parts, model, resistance, unit, plan.px_per_m, thickness, photo=photo)
-
-
-def touched_by(block: int, model: RigidBlockModel) -> list[int]:
-    """Return the ids that a block of a model touches, ascending; 0 is the ground."""
-    pairs = ((face.block, face.other) for face in model.interfaces)
-    return sorted({one for pair in pairs if block in pair for one in pair} - {block})
 
 
 def scaled(model: RigidBlockModel, factor: float) -> RigidBlockModel:

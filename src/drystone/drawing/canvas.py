@@ -179,7 +179,8 @@ def draw_block(
 ) -> None:
     """Add a block to the axes; `gid` names it (in SVG files too)."""
     drawn = {"linewidth": 0.6, "edgecolor": OUTLINE_COLOUR, "joinstyle": "round", **style}
-    ax.add_patch(PathPatch(block_path(loops), facecolor=fill, gid=gid, **drawn))
+    # Not as a patch of the axes, which are fitted: limits of a thousand paths take seconds.
+    ax.add_artist(PathPatch(block_path(loops), facecolor=fill, gid=gid, **drawn))
 
 
 def draw_legend(ax: Axes, entries: Legend, size: float = 7.0) -> None:

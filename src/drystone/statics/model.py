@@ -1,5 +1,7 @@
 """Rigid blocks and the interfaces between them (§4.1)."""
 
+from collections import defaultdict
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Literal
@@ -104,6 +106,20 @@ class RigidBlockModel:
     def friction(self, interface: Interface) -> float:
         """Return the coefficient of friction of an interface, at most `NO_SLIP`."""
         return min(self.mu if interface.mu is None else interface.mu, NO_SLIP)
+
+    @cached_property
+    def faces(self) -> Mapping[int, tuple[Interface, ...]]:
+        """Interfaces of each block that touches anything, and those of the ground."""
+        found = defaultdict[int, list[Interface]](list)
+        for interface in self.interfaces:
+            found[interface.block].append(interface)
+            found[interface.other].append(interface)
+        return {block: tuple(faces) for block, faces in found.items()}
+
+    def touched_by(self, block: int) -> list[int]:
+        """Return the ids that a block touches, ascending; 0 is the ground."""
+        pairs = ((face.block, face.other) for face in self.faces.get(block, ()))
+        return sorted({one for pair in pairs for one in pair} - {block})
 
     @cached_property
     def contact_interfaces(self) -> NDArray[np.int64]:

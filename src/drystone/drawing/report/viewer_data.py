@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from drystone.drawing.assembly import Assembly, assembly_of_result, touched_by
+from drystone.drawing.assembly import Assembly, assembly_of_result
 from drystone.drawing.outlines import regions_box, wall_regions
 from drystone.drawing.palette import PLAIN_COLOUR, WEDGE_COLOUR, cluster_colour, text_colour
 from drystone.drawing.photo import read_photo
@@ -148,7 +148,7 @@ def view_of_wall(
             region.id, "wedge" if region.id in names.wedges else "stone", region.loops,
             region.centroid, digits, number=region.id,
             size=rounded(np.ptp(np.concatenate(region.loops), axis=0), digits),
-            neighbours=touched_by(region.id, model),
+            neighbours=model.touched_by(region.id),
         )
         for region in regions
     ]  # fmt: skip

@@ -60,9 +60,7 @@ def beside(assembly: Assembly, part: Part) -> dict[str, list[int]]:
     on; its own are not, they come after it.
     """
     sums: dict[int, Points] = {}
-    for interface in assembly.model.interfaces:
-        if part.id not in (interface.block, interface.other):
-            continue
+    for interface in assembly.model.faces.get(part.id, ()):
         towards = 1.0 if interface.block == part.id else -1.0
         other = interface.other if towards > 0 else interface.block
         # Contacts at a point have no length, and count a little.
