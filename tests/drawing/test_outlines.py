@@ -10,7 +10,6 @@ from scipy import ndimage
 
 from drystone.drawing.outlines import (
     label_regions,
-    polygon_regions,
     stands_on_ground,
     wall_outlines,
     wall_regions,
@@ -57,7 +56,7 @@ def test_wall_outlines_lie_where_the_plan_has_its_blocks(px_per_m):
 def test_regions_of_polygons_have_their_centroid_and_area(offset):
     corners = np.array([[0, 0], [3, 0], [3, 1], [1, 1], [1, 3], [0, 3]], float) + offset
     for polygon in (corners, corners[::-1], np.vstack([corners, corners[:1]])):
-        (region,) = polygon_regions({9: polygon})
+        (region,) = wall_regions({9: polygon})
         assert region.id == 9
         # Two rectangles: 3 x 1 and 1 x 2.
         assert np.array(region.centroid) - offset == pytest.approx((1.1, 1.1))

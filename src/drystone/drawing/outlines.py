@@ -46,28 +46,24 @@ def label_regions(labels: Labels) -> tuple[Region, ...]:
     return tuple(regions)
 
 
-def polygon_regions(polygons: Mapping[int, Loop]) -> tuple[Region, ...]:
-    """Return the regions of polygons, either way round, closed or not, ordered by id."""
+def wall_regions(wall: Labels | Mapping[int, Loop]) -> tuple[Region, ...]:
+    """Return the regions of a wall, ordered by id, in the frame of its block model.
+
+    A label image stands on its lowest stone pixel, as in
+    :func:`drystone.contacts.blocks.model_from_labels`.  Polygons go either way round, closed or
+    not.
+    """
+    if not isinstance(wall, Mapping):
+        filled = np.flatnonzero((wall > 0).any(axis=1))
+        return label_regions(wall[: int(filled[-1]) + 1]) if filled.size else ()
     regions = []
-    for block in sorted(polygons):
-        loop = np.asarray(polygons[block], float)
+    for block in sorted(wall):
+        loop = np.asarray(wall[block], float)
         if (loop[0] == loop[-1]).all():
             loop = loop[:-1]
         area, x, y = area_and_centroid(loop)
         regions.append(Region(block, (loop if area > 0 else loop[::-1],), (x, y)))
     return tuple(regions)
-
-
-def wall_regions(wall: Labels | Mapping[int, Loop]) -> tuple[Region, ...]:
-    """Return the regions of a wall, a label image or polygons, in the frame of its block model.
-
-    A label image stands on its lowest stone pixel, as in
-    :func:`drystone.contacts.blocks.model_from_labels`.
-    """
-    if isinstance(wall, Mapping):
-        return polygon_regions(wall)
-    filled = np.flatnonzero((wall > 0).any(axis=1))
-    return label_regions(wall[: int(filled[-1]) + 1]) if filled.size else ()
 
 
 def rectangle(x: float, y: float, width: float, height: float) -> Loop:

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from drystone.drawing.canvas import MARGIN_IN, WIDTH_IN, draw, save
 from drystone.drawing.drawing import Drawable, Drawing, Lines, Surface, Words, ground, step_by_id
-from drystone.drawing.outlines import Bounds, Loop, polygon_regions, rectangle, regions_box
+from drystone.drawing.outlines import Bounds, Loop, rectangle, regions_box, wall_regions
 from drystone.drawing.palette import GREY, OUTLINE_COLOUR, PALE, rgb
 from drystone.drawing.pictures.mechanism import motion_of
 from drystone.drawing.words.checked import PICTURE, Checked, Rehearsed
@@ -177,7 +177,7 @@ def plot_failure(view: FailureView, ax: Axes | None = None) -> Axes:
     legend: dict[str, Surface | Lines] = {}
     if view.concerned:
         legend["fails"] = Surface("", (), CONCERNED)
-    ended = polygon_regions({**view.planned, **view.ended})
+    ended = wall_regions({**view.planned, **view.ended})
     for region in ended:
         # Blocks that fail lie over those that they have got into, and over their numbers.
         fails = region.id in view.concerned
@@ -227,8 +227,7 @@ SURE, UNSURE, ALWAYS = "#d5e8d4", "#f0c050", "#b03030"
 
 def plot_risk(card: Rehearsed) -> Axes:
     """Draw a plan, in source px; numbers are in how many of 100 runs a stone falls."""
-    planned = {block: corners for group in card.groups for block, corners in group}
-    regions = polygon_regions(planned)
+    regions = wall_regions({block: corners for group in card.groups for block, corners in group})
     x0, y0, x1, y1 = regions_box([region.loops for region in regions])
     pad = 0.03 * (y1 - y0)
     box = x0 - pad, min(y0, 0.0) - 2 * pad, x1 + pad, y1 + pad
