@@ -64,8 +64,8 @@ def marker_page(sheets: MarkerSheets, ids: Sequence[int]) -> SheetPage:
         below = y + size + away if upper else y - away
         page.write(x + size / 2, page.height - below, f"marker {marker_id}", 8.0, color="#444444",
                    ha="center", va="top" if upper else "bottom")  # fmt: skip
-    below = places[0, 1] + size + layout.margin_mm(size)
-    lower = page.height if sheets.single else places[-1, 1] - layout.margin_mm(size)
+    margin = layout.margin_mm(size)
+    below, lower = places[0, 1] + size + margin, places[-1, 1] - margin
     middle = below + layout.MIDDLE_MM / 2 if sheets.single else (below + lower) / 2
     x, top = page.width / 2, page.height - middle + layout.MIDDLE_MM / 2 - 10.0
     left, right = x - layout.CHECK_LINE_MM / 2, x + layout.CHECK_LINE_MM / 2
@@ -84,22 +84,21 @@ def marker_page(sheets: MarkerSheets, ids: Sequence[int]) -> SheetPage:
 def _lines(
     sheets: MarkerSheets, ids: Sequence[int], places: NDArray[np.float64], size: float
 ) -> list[str]:
-    one = len(ids) == 1
-    what = f"marker{'' if one else 's'} {', '.join(map(str, ids))}"
+    what = f"marker{'' if len(ids) == 1 else 's'} {', '.join(map(str, ids))}"
     lines = [
         f"drystone: {what} of {FAMILIES[sheets.dictionary][0]}, {size:g} mm, on {sheets.page}",
         "1. Print at 100 % (not 'fit to page') and measure the line above.",
     ]
-    if one:
-        return [
-            *lines,
+    if sheets.single:
+        lines += [
             "2. Lay this and at least one other marker flat on the ground beside the stones,",
             "    all white around the black visible; photograph from above, without glare.",
         ]
-    across, down = places[2] + size - places[0]
-    return [
-        *lines,
-        "2. Lay the whole sheet flat beside the stones; photograph from above, without glare.",
-        f"Outer corners of the black squares: {across:.1f} mm across, {down:.1f} mm down, "
-        f"{np.hypot(across, down):.1f} mm diagonally.",
-    ]
+    else:
+        across, down = places[2] + size - places[0]
+        lines += [
+            "2. Lay the whole sheet flat beside the stones; photograph from above, without glare.",
+            f"Outer corners of the black squares: {across:.1f} mm across, {down:.1f} mm down, "
+            f"{np.hypot(across, down):.1f} mm diagonally.",
+        ]
+    return lines
