@@ -127,13 +127,6 @@ class SheetPage:
             bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.2}, zorder=5,
         )  # fmt: skip
 
-    def foot(self, left: str, right: str) -> None:
-        """Write what the page belongs to, and its number."""
-        self.line([(EDGE_MM, EDGE_MM - 1.5), (self.right, EDGE_MM - 1.5)], colour=GREY)
-        room = self.right - EDGE_MM - PAGE_NUMBER_MM
-        self.write(EDGE_MM, EDGE_MM - 5.0, left, SMALL_PT, color=FAINT, room=room)
-        self.write(self.right, EDGE_MM - 5.0, right, SMALL_PT, ha="right", color=FAINT)
-
 
 USUAL_SCALES = (1.0, 2.0, 5.0, 10.0, 20.0, 25.0, 50.0, 100.0, 200.0, 250.0, 500.0, 1000.0)
 
@@ -213,9 +206,13 @@ class BuildSheet:
         """Draw the pages: the wall, a line a stone, the fetch list, wedges to cut."""
         pages = [self._first_page(), *self._row_pages(), *self._list_pages()]
         for number, page in enumerate(pages, 1):
+            y, right = EDGE_MM - 5.0, page.right
+            page.line([(EDGE_MM, EDGE_MM - 1.5), (right, EDGE_MM - 1.5)], colour=GREY)
             # What tells plans apart is first: a long title is cut.
-            foot = f"page {number} of {len(pages)}"
-            page.foot(f"plan {self._sha256}   {self._title}", foot)
+            said, room = f"plan {self._sha256}   {self._title}", right - EDGE_MM - PAGE_NUMBER_MM
+            page.write(EDGE_MM, y, said, SMALL_PT, color=FAINT, room=room)
+            numbered = f"page {number} of {len(pages)}"
+            page.write(right, y, numbered, SMALL_PT, ha="right", color=FAINT)
         return pages
 
     @cached_property
