@@ -87,6 +87,15 @@ def _write_report(folder: Path, card: Card, loads: Loads, per_unit_m: float | No
     ] or [(f"with mu = {curve[0].mu:g} to {curve[-1].mu:g}", "no load multiplier")]  # fmt: skip
     rows = [*_full_names(card.rows()), *friction]
     cite = CITATION.format(version=version("drystone"), sha256=card.sha256)
+    # What the strength of the associative analysis does not say.
+    more = [
+        content.ResultCard(
+            f"{content.ALPHA} {side}", f"Without dilatancy, to the {side}",
+            content.number(end.alpha), "higher",
+            f"Joints slide without opening (Coulomb). {end.message}",
+        )
+        for side, end in card.without.items()
+    ]  # fmt: skip
     # Where a fall was found no load is needed.
     without = {
         side: 0.0 if end.status is LimitStatus.UNSTABLE else end.alpha
@@ -94,7 +103,7 @@ def _write_report(folder: Path, card: Card, loads: Loads, per_unit_m: float | No
     }
     view = view_of_wall(
         shapes, model, resistance, title="Limit analysis of a wall", unit=unit, names=wall.names,
-        cards=_cards(card), load_case=card.load_case, without_dilatancy=without,
+        cards=more, load_case=card.load_case, without_dilatancy=without,
     )  # fmt: skip
     view["inputs"] = [list(row) for row in (*rows, ("cite", cite))]
     view["notices"] = [asdict(notice) for notice in wall.notices]
@@ -110,15 +119,6 @@ def _full_names(rows: Iterable[tuple[str, str]]) -> Iterator[tuple[str, str]]:
         else:
             above = name
             yield name, value
-
-
-def _cards(card: Card) -> Iterator[content.ResultCard]:
-    """Yield what the strength of the associative analysis does not say."""
-    for side, result in card.without.items():
-        value = content.number(result.alpha)
-        said = f"Joints slide without opening (Coulomb). {result.message}"
-        name = f"Without dilatancy, to the {side}"
-        yield content.ResultCard(f"{content.ALPHA} {side}", name, value, "higher", said)
 
 
 Cell = str | int | float
