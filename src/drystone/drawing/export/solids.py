@@ -20,19 +20,16 @@ from drystone.kernels.polygons import Points, area_and_centroid
 from drystone.model.frames3d import Matrix, Vector
 from drystone.model.outline import second_moments
 
-Vertices = NDArray[np.float64]
-Triangles = NDArray[np.int64]
-
 
 @dataclass(frozen=True, eq=False)
 class Solid:
     """A closed surface in metres; triangles are counter-clockwise as seen from outside."""
 
-    vertices: Vertices
-    triangles: Triangles
+    vertices: NDArray[np.float64]
+    triangles: NDArray[np.int64]
 
     @property
-    def normals(self) -> Vertices:
+    def normals(self) -> NDArray[np.float64]:
         """(m, 3) unit vectors out of the triangles."""
         first, second, third = (self.vertices[self.triangles[:, i]] for i in range(3))
         across = np.cross(second - first, third - first)
