@@ -1,7 +1,7 @@
 """A wall built up stone by stone in a rigid-body engine: what moves, and what falls."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 import shapely
@@ -28,7 +28,7 @@ stone by .1 L).  For stones of 50 px it is .15 px, about the contact tolerance.
 class BuildSettings:
     """How a wall is built up; lengths in mean block sizes L, times in sqrt(L / g)."""
 
-    engine: EngineSettings = field(default_factory=lambda: ROUNDED)  # how the engine is driven
+    engine: EngineSettings = ROUNDED  # how the engine is driven
     # A block has fallen when a point of it has moved by more than this share of its size, the
     # square root of its area; a wedge, when by more than this share of its stone's size.
     moved_share: float = 0.1
