@@ -147,15 +147,9 @@ READERS = {
 """Names of formats, their readers, and how many metres a mesh may be beside its place."""
 
 
-@pytest.fixture(scope="module")
-def exact():
-    """A plan with a wedge."""
-    return assembly("exact")
-
-
 @pytest.mark.parametrize("reader", READERS)
-def test_every_part_is_closed_and_at_its_place_in_order(reader, exact, tmp_path):
-    wall, (written, read, off) = exact, READERS[reader]
+def test_every_part_is_closed_and_at_its_place_in_order(reader, tmp_path):
+    wall, (written, read, off) = assembly("exact"), READERS[reader]
     found = list(read(FORMATS[written].write(wall, tmp_path, SETTINGS)))
     order = [part.name for part in wall.parts]
     if written == "glb":
@@ -167,7 +161,8 @@ def test_every_part_is_closed_and_at_its_place_in_order(reader, exact, tmp_path)
         assert_in_place(mesh, part, off)
 
 
-def test_colours_of_obj_are_those_of_the_clusters(exact, tmp_path):
+def test_colours_of_obj_are_those_of_the_clusters(tmp_path):
+    exact = assembly("exact")
     path, _ = FORMATS["obj"].write(exact, tmp_path, SETTINGS)
     scene = trimesh.load_scene(path, split_objects=True, group_material=False, process=False)
     for part in exact.parts:
@@ -180,7 +175,8 @@ def test_colours_of_obj_are_those_of_the_clusters(exact, tmp_path):
     assert (np.array(lines[: len(first)], float)[:, [0, 2]] == first).all()
 
 
-def test_nodes_of_glb_have_the_poses_steps_and_colours_of_the_wall(exact, tmp_path):
+def test_nodes_of_glb_have_the_poses_steps_and_colours_of_the_wall(tmp_path):
+    exact = assembly("exact")
     (path,) = FORMATS["glb"].write(exact, tmp_path, SETTINGS)
     data = path.read_bytes()
     *header, size, kind = struct.unpack("<4sIII4s", data[:20])
@@ -202,7 +198,8 @@ def test_nodes_of_glb_have_the_poses_steps_and_colours_of_the_wall(exact, tmp_pa
         assert factor == pytest.approx([*light, 1.0], abs=0.003)
 
 
-def test_a_urdf_loads_with_mass_centre_and_inertia_of_its_meshes(exact, tmp_path):
+def test_a_urdf_loads_with_mass_centre_and_inertia_of_its_meshes(tmp_path):
+    exact = assembly("exact")
     path, *_ = FORMATS["urdf"].write(exact, tmp_path, SETTINGS)
     robot = RobotModel.from_urdf_file(str(path))
     robot.load_geometry(DefaultMeshLoader(basepath=str(path.parent)), precision=12)
