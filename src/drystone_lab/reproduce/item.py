@@ -130,6 +130,7 @@ class Trials:
     way: str
     specs: tuple[RunSpec, ...]
     outcomes: tuple[RunOutcome, ...]
+    data: Path | None  # Folder of the published data
 
     def values(self, figure: str) -> tuple[float | None, ...]:
         """Return a figure of all of them; None where a wall has none.
@@ -180,13 +181,23 @@ class Trials:
         filled = [value or 0.0 for value in self.values("F_SF")]
         return sorted(range(len(filled)), key=filled.__getitem__)[(len(filled) - 1) // 2]
 
+    def built(self, which: int = 0) -> Wall:
+        """Return one of the walls, built again."""
+        return self.outcomes[which].wall(self.specs[which], self.data)
 
-@dataclass(frozen=True, eq=False)
-class StudyWalls:
+    def drawn(self, title: str, which: int = 0) -> TitledWall:
+        """Return one of the walls as a panel, stones coloured by cluster."""
+        return title, self.built(which), self.outcomes[which].clusters
+
+    def titled(self, title: str, which: int = 0) -> TitledWall:
+        """Return one of the walls as a panel, with its figures in the title."""
+        figures = self.outcomes[which].figures
+        placed = f"{figures['placed']} of {figures['stones']} stones"
+        return self.drawn(f"{title}: {placed}\n{cells.in_words(figures)}", which)
+
+
+class StudyWalls(tuple[Trials, ...]):
     """The walls of a study: of the first set by every way, then of the next."""
-
-    context: Context
-    all: tuple[Trials, ...]
 
     @classmethod
     def built(
@@ -203,54 +214,36 @@ class StudyWalls:
             for way, changes in ways.items()
         ]
         outcomes = iter(context.run([spec for *_, specs in asked for spec in specs]))
-        trials = [Trials(*one, tuple(next(outcomes) for _ in one[-1])) for one in asked]
-        return cls(context, tuple(trials))
-
-    def __iter__(self) -> Iterator[Trials]:
-        return iter(self.all)
+        data = context.data
+        return cls(Trials(*one, tuple(next(outcomes) for _ in one[-1]), data) for one in asked)
 
     @property
     def seeds(self) -> tuple[int, ...]:
         """Of every set and way."""
-        return tuple(spec.seed for spec in self.all[0].specs)
+        return tuple(spec.seed for spec in self[0].specs)
 
     @property
-    def by_wall(self) -> tuple["StudyWalls", ...]:
+    def by_wall(self) -> list["StudyWalls"]:
         """The walls of each set."""
-        groups = groupby(self.all, key=attrgetter("wall"))
-        return tuple(StudyWalls(self.context, tuple(group)) for _, group in groups)
+        return [StudyWalls(group) for _, group in groupby(self, key=attrgetter("wall"))]
 
     @property
     def name(self) -> str:
         """Of the first set."""
-        return self.all[0].wall.name
+        return self[0].wall.name
 
     @property
     def names(self) -> str:
         """Of all sets."""
-        return ", ".join(dict.fromkeys(one.wall.name for one in self.all))
+        return ", ".join(dict.fromkeys(one.wall.name for one in self))
 
     def of(self, way: str) -> list[Trials]:
         """Return the trials of one way, in the order of the sets."""
-        return [each for each in self.all if each.way == way]
+        return [each for each in self if each.way == way]
 
     def values(self, way: str, figure: str) -> list[float | None]:
         """Return a figure of all walls of one way, in the order of sets and seeds."""
         return [value for trials in self.of(way) for value in trials.values(figure)]
-
-    def wall(self, trials: Trials, which: int = 0) -> Wall:
-        """Return one of the walls, built again."""
-        return trials.outcomes[which].wall(trials.specs[which], self.context.data)
-
-    def drawn(self, trials: Trials, title: str, which: int = 0) -> TitledWall:
-        """Return one of the walls as a panel, stones coloured by cluster."""
-        return title, self.wall(trials, which), trials.outcomes[which].clusters
-
-    def titled(self, trials: Trials, title: str, which: int = 0) -> TitledWall:
-        """Return one of the walls as a panel, with its figures in the title."""
-        figures = trials.outcomes[which].figures
-        placed = f"{figures['placed']} of {figures['stones']} stones"
-        return self.drawn(trials, f"{title}: {placed}\n{cells.in_words(figures)}", which)
 
     def strips(self, name: str, figures: Sequence[str], label: str) -> ItemFigure:
         """Draw a point a wall: a panel a figure, a group a set and way, called as a label says."""
@@ -261,7 +254,7 @@ class StudyWalls:
 
     def sheet(self, name: str, columns: int, label: str) -> ItemFigure:
         """Draw the wall of the first seed of every set and way."""
-        walls = [self.titled(one, label.format(one)) for one in self]
+        walls = [one.titled(label.format(one)) for one in self]
         return ItemFigure(name, plot_walls(walls, columns))
 
 

@@ -256,18 +256,13 @@ class FiveWall(NamedTuple):
     The first trial is that of the fixed seed.
     """
 
-    built: StudyWalls
+    trials: Trials
     masons: TracedWall | None
-
-    @property
-    def trials(self) -> Trials:
-        """Of the one set."""
-        return self.built.all[0]
 
     @property
     def stones(self) -> StoneSet:
         """All that there are."""
-        return self.trials.wall.source.stones(self.built.context.data)
+        return self.trials.wall.source.stones(self.trials.data)
 
     @property
     def best(self) -> int:
@@ -277,12 +272,10 @@ class FiveWall(NamedTuple):
 
 def five_walls(found: StudyWalls) -> list[FiveWall]:
     """Read the masons' walls."""
-    walls = []
-    for built in found.by_wall:
-        wall = built.all[0].wall
-        masons = None if wall.stand_in else masons_wall(wall, found.context.data)
-        walls.append(FiveWall(built, masons))
-    return walls
+    return [
+        FiveWall(one, None if one.wall.stand_in else masons_wall(one.wall, one.data))
+        for one in found
+    ]
 
 
 def _references(wall: FiveWall) -> Rows:
@@ -322,7 +315,7 @@ def _ours(wall: FiveWall) -> Rows:
 
 
 def _five_panels(wall: FiveWall) -> list[sheets.Panel]:
-    built, trials, stones = wall.built, wall.trials, wall.stones
+    trials, stones = wall.trials, wall.stones
     seeds = [spec.seed for spec in trials.specs]
     clusters = cluster_stones(stones, PoseBook(trials.wall.scale))
     title = f"Wall {trials.wall.number}, {trials.wall.name}\n"
@@ -333,8 +326,8 @@ def _five_panels(wall: FiveWall) -> list[sheets.Panel]:
         masons = wall.masons.panel("masons, gaps closed", wall.masons.papers_way)
     return [
         sheets.stones_panel(title, stones, clusters),
-        sheets.wall_panel(*built.titled(trials, f"fixed seed {seeds[0]}")),
-        sheets.wall_panel(*built.titled(trials, best, wall.best)),
+        sheets.wall_panel(*trials.titled(f"fixed seed {seeds[0]}")),
+        sheets.wall_panel(*trials.titled(best, wall.best)),
         masons,
     ]
 

@@ -78,7 +78,7 @@ class NoiseLevel(NamedTuple):
     @property
     def ours(self) -> Trials:
         """Walls of the paper's method."""
-        return self.built.all[0]
+        return self.built[0]
 
     def least(self, name: str, rule: str = "paper") -> float:
         """Return the median of a figure, 0 when no wall has it: one that falls has none."""
@@ -195,7 +195,7 @@ def _noise_pictures(levels: Sequence[NoiseLevel]) -> Iterator[ItemFigure]:
         figures, seed = level.ours.outcomes[place].figures, level.ours.specs[place].seed
         resistance = "-" if figures["F_LR"] is None else f"{figures['F_LR']:.2f}"
         title = f"{level.ours.wall.name}\nF_SF {figures['F_SF'] or 0.0:.2f}, F_LR {resistance}"
-        walls.append(level.built.drawn(level.ours, f"{title}, seed {seed}", place))
+        walls.append(level.ours.drawn(f"{title}, seed {seed}", place))
     yield ItemFigure("fig22", plot_walls(walls, 2))
     yield _scatter(levels)
     yield _over_noise(levels)
@@ -286,8 +286,7 @@ def _series(levels: Sequence[NoiseLevel], name: str) -> list[list[tuple[int, flo
 
 NOISE = PaperItem(
     then=lambda found: [
-        NoiseLevel(group, reference_of(group.all[0].wall, found.context.data))
-        for group in found.by_wall
+        NoiseLevel(group, reference_of(group[0].wall, group[0].data)) for group in found.by_wall
     ],
     claims=noise_findings,
     tables={"reference": _references},

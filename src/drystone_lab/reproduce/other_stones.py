@@ -45,7 +45,7 @@ def rounded_findings(found: StudyWalls) -> Iterator[Claimed]:
     """Compare fixed with varied sizes, for each shape."""
     for name, shape in product(("F_SF", "F_AV"), SHAPES):
         fixed, varied = (
-            figures_of(one.outcomes, name) for one in found.all if one.wall.name.startswith(shape)
+            figures_of(one.outcomes, name) for one in found if one.wall.name.startswith(shape)
         )
         words = (
             f"median {name} {median(fixed):.3g} for a fixed size and {median(varied):.3g} for "
@@ -65,7 +65,7 @@ def _rounded_pictures(found: StudyWalls) -> Iterator[ItemFigure]:
         filling, interlocking, *_ = metric_cells(one.outcomes[one.middle].figures)
         title = f"{one.wall.name}\nF_SF {filling}, F_AV {interlocking} %"
         title += f", seed {one.specs[one.middle].seed}"
-        walls.append(found.drawn(one, title, one.middle))
+        walls.append(one.drawn(title, one.middle))
     yield ItemFigure("fig26", plot_walls(walls, 2))
     groups = {
         one.wall.name: list(zip(one.values("F_SF"), one.values("F_AV"), strict=True))
@@ -200,7 +200,7 @@ def brick_walls(context: Context, size: tuple[int, int] | None = None) -> Bricks
     sides: Mapping[str, Changes] = {"one side": (), "two sides": TWO_SIDED}
     found = StudyWalls.built(context, walls, sides, (context.seed,))
     return [
-        (aspect, one, found.wall(one))
+        (aspect, one, one.built())
         for side in sides
         for aspect, one in zip(ASPECTS, found.of(side), strict=True)
     ]

@@ -241,7 +241,7 @@ def _scales_pictures(found: ScaledWalls) -> Iterator[ItemFigure]:
         figures = one.outcomes[0].figures
         title = f"scale {scale:g}: {wall.size} px, {figures['placed']} stones, "
         title += f"F_SF {figures['F_SF']:.2f}"
-        walls.append((title, found.built.wall(one), colours))
+        walls.append((title, one.built(), colours))
     yield ItemFigure("fig29", plot_walls(walls, 2))
     figure = Figure(figsize=(6.4, 4.0))
     series = {
@@ -266,7 +266,7 @@ RESOLUTION = PaperItem(
     },
     times={
         "released": lambda found: released_rows(
-            found.built.context.data, {str(scale): wall for scale, wall in found.timed.items()}
+            found.built[0].data, {str(scale): wall for scale, wall in found.timed.items()}
         ),
         "pixels": lambda found: pixel_rows(found.timed),
     },

@@ -23,7 +23,14 @@ from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LimitResult, LimitStatus
 from drystone_lab import cells, walls
 from drystone_lab.cells import METRICS, rounded
-from drystone_lab.pictures import Panel, group_panels, plot_two_figures, sheet_of, wall_aspect
+from drystone_lab.pictures import (
+    Panel,
+    group_panels,
+    plot_two_figures,
+    plot_walls,
+    sheet_of,
+    wall_aspect,
+)
 from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem, StudyWalls, Trials
 from drystone_lab.reproduce.items import ITEMS
 from drystone_lab.runs.spec import Changes
@@ -37,7 +44,6 @@ ALPHAS: Mapping[str, float] = {"left": 0.79, "right": 0.71}
 class BaseCase(NamedTuple):
     """Walls of several seeds, and the mechanisms of the first by both flow rules."""
 
-    built: StudyWalls
     trials: Trials
     wall: Wall
     model: RigidBlockModel
@@ -52,7 +58,7 @@ class BaseCase(NamedTuple):
 def base_case(found: StudyWalls) -> BaseCase:
     """Look at the mechanisms of the first wall."""
     (trials,) = found
-    wall = found.wall(trials)
+    wall = trials.built()
     model = model_from_labels(wall.labels, trials.specs[0].settings().mu).model
     both = lateral_resistance(model, mechanism=True)
     without = nonassociative_resistance(model)
@@ -60,7 +66,7 @@ def base_case(found: StudyWalls) -> BaseCase:
         ("associative", both.left), ("without dilatancy", without.left),
         ("associative", both.right), ("without dilatancy", without.right),
     )  # fmt: skip
-    return BaseCase(found, trials, wall, model, mechanisms)
+    return BaseCase(trials, wall, model, mechanisms)
 
 
 def _summary(case: BaseCase) -> Rows:
@@ -87,20 +93,20 @@ def _rules(case: BaseCase) -> Rows:
 
 
 def _pictures(case: BaseCase) -> Iterator[ItemFigure]:
-    title = f"{case.built.name}, seed {case.built.seeds[0]}"
-    yield case.built.sheet("fig14", 1, title)
+    name = case.trials.wall.name
+    title = f"{name}, seed {case.trials.specs[0].seed}"
+    yield ItemFigure("fig14", plot_walls([case.trials.titled(title)], 1))
     for rule, result in case.mechanisms:
         if result.mechanism is not None:
             falls = result.status is LimitStatus.UNSTABLE
             towards = None if falls else result.direction
             ax = plot_mechanism(case.wall.labels, result.mechanism, towards, result.alpha)
             loose = rule != "associative"
-            name = f"fig15_{result.direction}{'_coulomb' * loose}"
             about = (result.direction, "no dilatancy" if loose else rule)
-            yield ItemFigure(name, ax.figure, about)
+            yield ItemFigure(f"fig15_{result.direction}{'_coulomb' * loose}", ax.figure, about)
     metrics: dict[str, dict[str, Sequence[float | None]]] = {
         "alpha / mu": {side: case.over_mu(side) for side in ALPHAS},
-        **{name: {case.built.name: case.trials.values(name)} for name in ("F_SF", "F_AV", "F_AH")},
+        **{metric: {name: case.trials.values(metric)} for metric in ("F_SF", "F_AV", "F_AH")},
     }
     yield ItemFigure("fig14_seeds", group_panels(metrics, claims={"alpha / mu": ALPHAS}))
 
@@ -116,7 +122,7 @@ ZOOM_ASPECT = 0.6
 
 def _wedges_claims(found: StudyWalls) -> Iterator[Claimed]:
     for one in found:
-        wall, figures = found.wall(one), one.outcomes[0].figures
+        wall, figures = one.built(), one.outcomes[0].figures
         area = float(figures["wedge_area"] or 0.0)
         tallest = max((wedge.mask.shape[0] for wedge in wall.wedges), default=0)
         yield Claimed(
@@ -129,7 +135,7 @@ def _wedges_claims(found: StudyWalls) -> Iterator[Claimed]:
 
 def _wedges(found: StudyWalls) -> Rows:
     for one in found:
-        wall = found.wall(one)
+        wall = one.built()
         unit = 1 / wall.site.scale
         mean = fmean(stone.posed.height_px for stone in wall.placements)
         for wedge in wall.wedges:
@@ -138,7 +144,8 @@ def _wedges(found: StudyWalls) -> Rows:
             yield one.wall.number, wedge.id, wedge.under, *map(rounded, sizes)
 
 
-def _wedges_picture(trials: Trials, wall: Wall) -> ItemFigure:
+def _wedges_picture(trials: Trials) -> ItemFigure:
+    wall = trials.built()
     zoomed = [
         (letter, wedge, _box(wall, wedge))
         for letter, wedge in zip("abc", shown(wall), strict=False)
@@ -204,7 +211,7 @@ def _box(wall: Wall, wedge: Wedge) -> Bounds:
 WEDGES = PaperItem(
     claims=_wedges_claims,
     tables={"fig19": _wedges},
-    pictures=lambda found: [_wedges_picture(one, found.wall(one)) for one in found],
+    pictures=lambda found: map(_wedges_picture, found),
 )
 
 
@@ -289,7 +296,7 @@ def named_variants(
     each = (
         StudyWalls.built(context, (wall,), {"paper": (), **ways}, seeds) for wall, ways in varied
     )
-    return StudyWalls(context, tuple(one for found in each for one in found))
+    return StudyWalls(one for found in each for one in found)
 
 
 VARIANTS = PaperItem(
@@ -297,7 +304,7 @@ VARIANTS = PaperItem(
     pictures=lambda found: [
         group.strips(f"variants_{number}", ("placed", "F_SF", "F_LR"), "{0.way}")
         for number, group in enumerate(found.by_wall, 1)
-        if len(group.all) > 1
+        if len(group) > 1
     ],
 )
 

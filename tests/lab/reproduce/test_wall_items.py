@@ -188,7 +188,7 @@ def test_more_walls_tell_a_difference():
             for shape in other_stones.SHAPES
             for one in firsts
         ]
-        assert next(other_stones.rounded_findings(SimpleNamespace(all=walls))).holds is holds
+        assert next(other_stones.rounded_findings(walls)).holds is holds
 
 
 def test_variants(here):
