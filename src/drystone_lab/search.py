@@ -1,12 +1,11 @@
 """Suite "search": methods that look for good walls, compared at equal CPU time."""
 
-import csv
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from drystone.errors import UsageError
 from drystone.metrics.frame import reduce_labels
@@ -27,7 +26,7 @@ from drystone_lab.cells import median_difference, median_of
 from drystone_lab.planned_walls import SETS, missing_data
 from drystone_lab.runs.spec import Changes, settings_of, told
 from drystone_lab.runs.workers import Crew
-from drystone_lab.table import BENCH, BenchSettings, Cell, Rows, Table, read_rows, worded
+from drystone_lab.table import BENCH, BenchSettings, Cell, Rows, Table, figure_in, read_rows, worded
 from drystone_lab.walls import BRICKS, SEARCHED, UNSEEN, Target, chosen
 
 Clock = Callable[[], float]
@@ -128,19 +127,18 @@ def looked_at_times(
     for _ in first.steps():
         pass
     reached: list[tuple[WayState, float]] = []
-    before: tuple[WayState, float] | None = None
     for state in way(first, end, clock):
-        now = state, clock()
-        while len(reached) < len(times) - 1 and now[1] > started + times[len(reached)]:
-            reached.append(before or now)
-        before = now
-        if now[1] > end:
+        reached.append((state, clock()))
+        if reached[-1][1] > end:
             break
-    assert before is not None  # noqa: S101 - the first wall is there
-    reached += [before] * (len(times) - len(reached))
+    # By each of the earlier times, and after the last one
+    counting = [
+        next((one for one in reversed(reached) if one[1] <= started + seconds), reached[0])
+        for seconds in times[:-1]
+    ] + reached[-1:]
     # Packed walls are built again only now, in nobody's time.
     possible = possible_filling(first.workshop)
-    return [WayResult(state.best(), state.walls, possible, at - started) for state, at in reached]
+    return [WayResult(state.best(), state.walls, possible, at - started) for state, at in counting]
 
 
 FIGURES = (
@@ -163,7 +161,11 @@ class SearchRun(NamedTuple):
     seconds: float  # CPU time
 
 
-COLUMNS = ("wall", "method", "seed", "seconds", *FIGURES, *SPENT)
+RUN = {"wall": str, "method": str, "seed": int, "seconds": float}
+KINDS: Mapping[str, Callable[[str], Any]] = {
+    **RUN, **dict.fromkeys(FIGURES, figure_in), **dict(zip(SPENT, (float, int, float), strict=True))
+}  # fmt: skip
+"""Columns of a table of searches."""
 
 
 def result_of(looked: WayResult) -> SearchResult:
@@ -173,8 +175,8 @@ def result_of(looked: WayResult) -> SearchResult:
         raise ValueError("no stone stands in this wall")
     other = second.second_arrangement(second.finer_picture(found.build.wall))
     values = (
-        figures.stones, figures.F_SF, figures.F_AV, figures.F_AH, figures.F_LR, other.F_AV,
-        other.F_AH, figures.T_LEVEL, figures.E_FLUSH, found.merit, looked.possible, looked.walls,
+        figures.stones, figures.F_SF, figures.F_AV, figures.F_AH, figures.F_LR, *other,
+        figures.T_LEVEL, figures.E_FLUSH, found.merit, looked.possible, looked.walls,
         looked.seconds,
     )  # fmt: skip
     return dict(zip((*FIGURES, *SPENT), values, strict=True))
@@ -189,36 +191,22 @@ def in_words(result: SearchResult, stones: int) -> str:
 
 def read_results(path: Path) -> dict[SearchRun, SearchResult]:
     """Read the results that a table holds; none when there is no table; E148 for another file."""
-    if not path.exists():
-        return {}
     what = "this is not a table of searches of this version."
     cure = "Name another file, which is begun anew, or take out the line if it was cut off."
-    refused = UsageError("E148", what, cure=cure)
-    return dict(read_rows(path, COLUMNS, _row, refused))
-
-
-def _row(row: dict[str, str]) -> tuple[SearchRun, SearchResult]:
-    run = SearchRun(row["wall"], row["method"], int(row["seed"]), float(row["seconds"]))
-    # Figures that count something are whole.
-    result = {
-        name: None if row[name] == "" else int(row[name]) if row[name].isdecimal()
-        else float(row[name])
-        for name in (*FIGURES, *SPENT)
-    }  # fmt: skip
-    if None in (result[name] for name in SPENT):
-        raise ValueError(row)
-    return run, result
+    found: dict[SearchRun, SearchResult] = {}
+    for row in read_rows(path, KINDS, UsageError("E148", what, cure=cure)):
+        run = SearchRun(*(row.pop(name) for name in RUN))
+        found[run] = row
+    return found
 
 
 def append_results(path: Path, results: Iterable[tuple[SearchRun, SearchResult]]) -> None:
     """Add results at the end of a table, which is begun when there is none."""
-    new = not path.exists()
+    names = (*FIGURES, *SPENT)
+    rows = tuple((*run, *(result[name] for name in names)) for run, result in results)
+    text = Table("", tuple(KINDS), rows).csv()
     with path.open("a", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        if new:
-            writer.writerow(COLUMNS)
-        for run, result in results:
-            writer.writerow([*run, *(result[name] for name in (*FIGURES, *SPENT))])
+        file.write(text if file.tell() == 0 else text.partition("\n")[2])
 
 
 class SearchTask(NamedTuple):
@@ -392,5 +380,5 @@ def masons_row(name: str, labels: Labels, scale: float) -> tuple[Cell, ...]:
     height, width = reduced.shape
     return (
         name, f"{width}x{height}", first.stones, first.F_SF, first.F_AV, first.F_AH,
-        repeated.F_AV, repeated.F_AH, sampled.F_AV, sampled.F_AH,
+        *repeated, *sampled,
     )  # fmt: skip

@@ -6,8 +6,6 @@ start, that they end where they like and cannot pass by the wall; that all of th
 the shortest alone.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -26,19 +24,12 @@ STARTS = 10
 """Paths from each of the two sides between which they lead; even."""
 
 
-@dataclass(frozen=True)
-class SecondArrangement:
-    """Interlocking and straightness by the second definition."""
+def second_arrangement(labels: Labels) -> tuple[float | None, float | None]:
+    """Return F_AV and F_AH of a wall by the second definition.
 
-    # By how much paths between the top and the foot of the wall are longer than straight,
-    # percent; higher is better.  None where a stone from end to end leaves no path.
-    F_AV: float | None
-    # The same between its ends; lower is better.  None where a stone is as high as the wall.
-    F_AH: float | None
-
-
-def second_arrangement(labels: Labels) -> SecondArrangement:
-    """Measure a wall by the second definition.
+    F_AV is by how much paths between the top and the foot of the wall are longer than straight,
+    percent (higher is better), None where a stone from end to end leaves no path.  F_AH is the same
+    between its ends (lower is better), None where a stone is as high as the wall.
 
     Stones are eroded and all else is joint, as in :func:`drystone.metrics.paths.joint_mask`, but
     there is open joint only along the sides where paths start and end, one px of it: paths cannot
@@ -53,7 +44,7 @@ def second_arrangement(labels: Labels) -> SecondArrangement:
     # As wide on both sides, so that a wall and its mirror image are worth the same.
     with_top_and_foot = joint[paths.PAD_TOP - 1 : 1 - paths.PAD_BOTTOM, cols]
     with_ends = joint[rows, paths.PAD_LEFT - 1 : 1 - paths.PAD_RIGHT]
-    return SecondArrangement(F_AV=_mean_excess(with_top_and_foot.T), F_AH=_mean_excess(with_ends))
+    return _mean_excess(with_top_and_foot.T), _mean_excess(with_ends)
 
 
 def finer_labels(labels: Labels) -> Labels:

@@ -7,14 +7,13 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any, TypeVar
+from typing import Any
 
 from drystone.errors import DrystoneError
 from drystone_lab.runs.spec import Changes
 
 Cell = str | int | float | bool | None
 Rows = Iterable[tuple[Cell, ...]]
-Row = TypeVar("Row")
 
 
 @dataclass(frozen=True)
@@ -77,22 +76,31 @@ def markdown_rows(columns: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
     return "\n".join("| " + " | ".join(line) + " |" for line in lines)
 
 
+def figure_in(text: str) -> int | float | None:
+    """Read a figure, which is whole where it counts something; None where it is not defined."""
+    if not text:
+        return None
+    return int(text) if text.isdecimal() else float(text)
+
+
 def read_rows(
-    path: Path,
-    columns: tuple[str, ...],
-    read: Callable[[dict[str, str]], Row],
-    refused: DrystoneError,
-) -> Iterator[Row]:
-    """Read a CSV file of such a table; of another one what is refused says the place."""
+    path: Path, kinds: Mapping[str, Callable[[str], Any]], refused: DrystoneError
+) -> Iterator[dict[str, Any]]:
+    """Read a CSV file of such a table, if it is there; of another one what is refused says where.
+
+    `kinds` are the columns, and what reads a cell of each.
+    """
+    if not path.exists():
+        return
     with path.open(newline="", encoding="utf-8") as file:
         rows = csv.DictReader(file)
         try:
-            if tuple(rows.fieldnames or ()) != columns:
-                raise ValueError(columns)
+            if (rows.fieldnames or []) != [*kinds]:
+                raise ValueError(rows.fieldnames)
             for row in rows:
                 if None in row.values():
                     raise ValueError(row)  # fewer cells than columns
-                yield read(row)
+                yield {name: read(row[name]) for name, read in kinds.items()}
         except (TypeError, ValueError, csv.Error) as error:
             refused.where = f"{path}:{max(1, rows.line_num)}"
             raise refused from error

@@ -7,7 +7,6 @@ from dataclasses import astuple, dataclass, fields
 from importlib.metadata import version
 from operator import attrgetter
 from pathlib import Path
-from typing import Any
 
 from drystone.errors import InputError
 from drystone.io.folder_lock import locked
@@ -15,7 +14,7 @@ from drystone.whole_files import write_whole
 from drystone_lab.public.suites import SUITE_VERSION
 from drystone_lab.runs.outcome import RunOutcome
 from drystone_lab.runs.spec import STRIPS, Changes
-from drystone_lab.table import Table, read_rows
+from drystone_lab.table import Table, figure_in, read_rows
 from drystone_lab.walls import Target
 
 CSV = "runs.csv"
@@ -82,16 +81,18 @@ class KeptRun:
         return value
 
 
-COLUMNS = tuple(field.name for field in fields(KeptRun))
+KINDS = {
+    field.name: field.type if isinstance(field.type, type) else figure_in
+    for field in fields(KeptRun)
+}
 
 
 def kept_runs(folder: Path) -> tuple[KeptRun, ...]:
     """Return the runs of a store, none where there is none; E401 for another table."""
-    path = folder / CSV
     what = "this is not a table of runs that can be used."
     cure = "Move it away; runs whose plans are kept beside it are not done again."
     refused = InputError("E401", what, cure=cure)
-    return tuple(read_rows(path, COLUMNS, _read, refused)) if path.is_file() else ()
+    return tuple(KeptRun(**row) for row in read_rows(folder / CSV, KINDS, refused))
 
 
 def keep(folder: Path, runs: Iterable[KeptRun]) -> None:
@@ -103,15 +104,4 @@ def keep(folder: Path, runs: Iterable[KeptRun]) -> None:
             "suite", "suite_version", "wall", "method", "settings", "seed", "version"
         )
         rows = tuple(astuple(run) for run in sorted(found.values(), key=order))
-        write_whole(folder / CSV, Table("", COLUMNS, rows).csv().encode())
-
-
-def _read(row: dict[str, str]) -> KeptRun:
-    values: dict[str, Any] = {}
-    for field in fields(KeptRun):
-        text, kind = row[field.name], field.type
-        if isinstance(kind, type):
-            values[field.name] = kind(text)
-        else:
-            values[field.name] = float(text) if text else None
-    return KeptRun(**values)
+        write_whole(folder / CSV, Table("", tuple(KINDS), rows).csv().encode())

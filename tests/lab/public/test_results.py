@@ -13,7 +13,7 @@ from scipy.stats import norm, rankdata, wilcoxon
 from drystone.errors import InputError, UsageError
 from drystone.io.folder_lock import locked
 from drystone_lab.public import tables
-from drystone_lab.public.store import COLUMNS, KeptRun, keep, kept_runs
+from drystone_lab.public.store import KINDS, KeptRun, keep, kept_runs
 from drystone_lab.public.tables import BenchResults
 
 RUN = KeptRun(
@@ -34,9 +34,9 @@ def test_runs_come_back_as_they_were_in_order_unless_another_run_writes(tmp_path
     assert [run.seconds for run in kept_runs(store)] == [0.5, 9.0]
     with (store / "runs.csv").open(newline="") as file:
         columns, first, second = csv.reader(file)
-    assert tuple(columns) == COLUMNS
+    assert columns == list(KINDS)
     assert first == [str(value) for value in astuple(later)]
-    assert second[COLUMNS.index("F_LR")] == ""
+    assert second[columns.index("F_LR")] == ""
     keep(tmp_path, [RUN])
     with locked(tmp_path), pytest.raises(UsageError, match="E149"):
         keep(tmp_path, [replace(RUN, run_key="b")])
@@ -50,6 +50,7 @@ def test_runs_come_back_as_they_were_in_order_unless_another_run_writes(tmp_path
         (lambda text: text.replace(",0.8,", ",much,"), 2),
         (lambda text: text.replace(",0.5,", ",,"), 2),
         (lambda text: text[:-40], 2),
+        (lambda _: "", 1),
     ],
 )
 def test_other_files_are_not_taken_for_tables(tmp_path, change, line):
