@@ -92,18 +92,24 @@ def offset_stack(shift: float, mu: float) -> KnownWall:
     return KnownWall(f"unit block on unit block, shifted by {shift:g}", rows, mu, left, right)
 
 
+def laid(courses: Sequence[str], *, full: float, height: float) -> tuple[Rectangle, ...]:
+    """Return bricks in courses from the bottom up: f is a full one, h a half one, - a gap."""
+    widths = {"f": full, "h": full / 2, "-": full}
+    found: list[Rectangle] = []
+    for row, course in enumerate(courses):
+        lefts = accumulate((widths[brick] for brick in course), initial=0.0)
+        for brick, left in zip(course, lefts, strict=False):
+            if brick != "-":
+                found.append((left, height * row, widths[brick], height))
+    return tuple(found)
+
+
 def running_bond() -> KnownWall:
     """Return bricks 2 x 1 in four courses of running bond, 4 wide; they slide at mu = .58.
 
     No closed form; the value that a public program for block assemblies prints for this wall.
     """
-    whole = ((0.0, 2.0), (2.0, 2.0))
-    halves = ((0.0, 1.0), (1.0, 2.0), (3.0, 1.0))
-    rows = tuple(
-        (x, float(course), width, 1.0)
-        for course in range(4)
-        for x, width in (whole, halves)[course % 2]
-    )
+    rows = laid(("ff", "hfh", "ff", "hfh"), full=2.0, height=1.0)
     return KnownWall("running bond of four courses, bricks 2 x 1: mu", rows, 0.58, 0.58, 0.58)
 
 
@@ -195,9 +201,6 @@ def least_thickness(count: int, mu: float, tolerance: float) -> float | None:
 
 HEIGHT, MU = 1.75, 0.65
 
-BRICKS = {"f": 4, "h": 2, "-": 4}
-"""Widths of a full brick, a half one and a gap."""
-
 
 def ferris_wall(
     number: int,
@@ -213,16 +216,11 @@ def ferris_wall(
     >>> len(model.blocks), len(model.interfaces)
     (33, 83)
     """
-    found: list[Rectangle] = []
-    for row, course in enumerate(courses):
-        lefts = accumulate((BRICKS[brick] for brick in course), initial=0)
-        for brick, left in zip(course, lefts, strict=False):
-            if brick != "-":
-                found.append((float(left), HEIGHT * row, float(BRICKS[brick]), HEIGHT))
+    found = laid(courses, full=4.0, height=HEIGHT)
     low, high = nonassociative
     # They are published to five digits: half a unit of the last one.
     return KnownWall(
-        f"example {number}, {len(found)} blocks", tuple(found), MU, alpha, alpha, 5e-6,
+        f"example {number}, {len(found)} blocks", found, MU, alpha, alpha, 5e-6,
         (low, high), may_not_converge,
     )  # fmt: skip
 
