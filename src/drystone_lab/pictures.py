@@ -114,12 +114,16 @@ def _draw_groups(ax: Axes, groups: Mapping[str, GroupValues], claims: Mapping[st
 
 
 def plot_two_figures(
-    groups: Mapping[str, Sequence[tuple[float | None, float | None]]], *, across: str, up: str
+    groups: Mapping[str, tuple[GroupValues, GroupValues]], *, across: str, up: str
 ) -> Axes:
-    """Draw one figure over another, a point a wall; large ones are medians of groups."""
+    """Draw one figure over another, a point a wall; large ones are medians of groups.
+
+    A group is the figures to the right of its walls, and those upwards in the same order.
+    """
     ax = Figure(figsize=(5.2, 3.8)).add_subplot()
-    for place, (name, pairs) in enumerate(groups.items()):
+    for place, (name, figures) in enumerate(groups.items()):
         colour, marker = LOOKS[place % len(LOOKS)]
+        pairs = zip(*figures, strict=True)
         found = [(x, y) for x, y in pairs if x is not None and y is not None]
         x, y = [pair[0] for pair in found], [pair[1] for pair in found]
         ax.plot(
@@ -325,17 +329,8 @@ def sheet_of(panels: Sequence[Panel], columns: int) -> Figure:
     return figure
 
 
-TitledWall = tuple[str, Wall, Mapping[int, int] | None]
-"""What is written above a wall, the wall, and the cluster of each of its stones by id."""
-
-
-def plot_walls(walls: Sequence[TitledWall], columns: int) -> Figure:
-    """Draw walls in rows, stones coloured by cluster and numbered in order, wedges dark red."""
-    return sheet_of([wall_panel(*wall) for wall in walls], columns)
-
-
 def wall_panel(title: str, wall: Wall, clusters: Mapping[int, int] | None) -> Panel:
-    """Return a wall as a panel of a sheet; see :func:`plot_walls`."""
+    """Return a wall as a panel, stones coloured by cluster and numbered, wedges dark red."""
     aspect = wall_aspect(wall.site.height_px / wall.site.width_px)
     return Panel(title, aspect, lambda ax: plot_wall(wall, clusters, ax))
 

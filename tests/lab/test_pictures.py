@@ -47,8 +47,8 @@ def test_panels_fill_rows(count, columns):
 
 
 def test_one_figure_over_another():
-    pairs = {"rotation": [(1.0, 0.5), (3.0, 0.7), (2.0, 0.1)], "wedge": [(None, 0.5), (4.0, 0.6)]}
-    ax = pictures.plot_two_figures(pairs, across="area", up="F_SF")
+    some = {"rotation": ([1.0, 3.0, 2.0], [0.5, 0.7, 0.1]), "wedge": ([None, 4.0], [0.5, 0.6])}
+    ax = pictures.plot_two_figures(some, across="area", up="F_SF")
     assert [value[0] for value in _line(ax, "median-rotation").get_data()] == [2.0, 0.5]
     assert [list(value) for value in _line(ax, "group-wedge").get_data()] == [[4.0], [0.6]]
     assert (ax.get_xlabel(), ax.get_ylabel()) == ("area", "F_SF")
@@ -141,7 +141,8 @@ def test_panels_go_from_left_to_right_and_down_as_high_as_the_tallest_of_their_r
 
 
 def test_every_wall_is_drawn_whole_under_its_title():
-    figure = pictures.plot_walls([("one", wall(), CLUSTERS), ("two\nlines", wall(), None)], 2)
+    walls = [("one", wall(), CLUSTERS), ("two\nlines", wall(), None)]
+    figure = pictures.sheet_of([pictures.wall_panel(*one) for one in walls], 2)
     assert [ax.get_title(loc="left") for ax in figure.axes] == ["one", "two\nlines"]
     for ax in figure.axes:
         gids = {patch.get_gid() for patch in ax.patches}

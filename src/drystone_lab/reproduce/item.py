@@ -15,7 +15,7 @@ from matplotlib.figure import Figure, SubFigure
 from drystone.model.wall import Wall
 from drystone.selection.policies.table1 import MARKS
 from drystone_lab import cells, timed_walls
-from drystone_lab.pictures import TitledWall, group_panels, plot_walls
+from drystone_lab.pictures import Panel, group_panels, sheet_of, wall_panel
 from drystone_lab.runs.outcome import Runner, RunOutcome
 from drystone_lab.runs.spec import Changes, RunSpec
 from drystone_lab.table import Cell, Rows, Table, worded
@@ -148,6 +148,10 @@ class Trials:
         """Return the median of a figure over the walls that have it; None when none has."""
         return cells.median_of(self.values(figure))
 
+    def least(self, figure: str) -> float:
+        """Return the median of a figure, 0 when no wall has it: one that falls has none."""
+        return self.median(figure) or 0.0
+
     @property
     def whole(self) -> int:
         """How many walls have all stones."""
@@ -185,11 +189,11 @@ class Trials:
         """Return one of the walls, built again."""
         return self.outcomes[which].wall(self.specs[which], self.data)
 
-    def drawn(self, title: str, which: int = 0) -> TitledWall:
+    def drawn(self, title: str, which: int = 0) -> Panel:
         """Return one of the walls as a panel, stones coloured by cluster."""
-        return title, self.built(which), self.outcomes[which].clusters
+        return wall_panel(title, self.built(which), self.outcomes[which].clusters)
 
-    def titled(self, title: str, which: int = 0) -> TitledWall:
+    def titled(self, title: str, which: int = 0) -> Panel:
         """Return one of the walls as a panel, with its figures in the title."""
         figures = self.outcomes[which].figures
         placed = f"{figures['placed']} of {figures['stones']} stones"
@@ -254,8 +258,8 @@ class StudyWalls(tuple[Trials, ...]):
 
     def sheet(self, name: str, columns: int, label: str) -> ItemFigure:
         """Draw the wall of the first seed of every set and way."""
-        walls = [one.titled(label.format(one)) for one in self]
-        return ItemFigure(name, plot_walls(walls, columns))
+        panels = [one.titled(label.format(one)) for one in self]
+        return ItemFigure(name, sheet_of(panels, columns))
 
 
 def rows_of(words: Mapping[str, Any], found: StudyWalls) -> Rows:

@@ -326,8 +326,8 @@ def _five_panels(wall: FiveWall) -> list[sheets.Panel]:
         masons = wall.masons.panel("masons, gaps closed", wall.masons.papers_way)
     return [
         sheets.stones_panel(title, stones, clusters),
-        sheets.wall_panel(*trials.titled(f"fixed seed {seeds[0]}")),
-        sheets.wall_panel(*trials.titled(best, wall.best)),
+        trials.titled(f"fixed seed {seeds[0]}"),
+        trials.titled(best, wall.best),
         masons,
     ]
 

@@ -70,10 +70,10 @@ def _steps(run: Sequence[Moment]) -> Rows:
 def _workflow(run: Sequence[Moment]) -> Iterator[ItemFigure]:
     stones, clusters, count = run[0].workshop.stones, run[0].workshop.clusters, len(run)
     walls = [
-        (f"after {number} stones", run[number - 1].stage.after, clusters)
+        pictures.wall_panel(f"after {number} stones", run[number - 1].stage.after, clusters)
         for number in sorted({1, max(1, count // 3), max(1, 2 * count // 3), count})
     ]
-    yield ItemFigure("fig3", pictures.plot_walls(walls, 2), {"placed": count, "count": len(stones)})
+    yield ItemFigure("fig3", pictures.sheet_of(walls, 2), {"placed": count, "count": len(stones)})
     free = "the landscape before the first stone: free between its bounds"
     panels = [
         pictures.stones_panel("the stones", stones, clusters),

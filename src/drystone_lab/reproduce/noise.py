@@ -17,7 +17,6 @@ from drystone.model.wall import Labels
 from drystone.statics.limit import lateral_resistance
 from drystone_lab import pictures
 from drystone_lab.cells import LEVEL, METRICS, differences, figures_of, rounded, trend
-from drystone_lab.pictures import plot_walls
 from drystone_lab.reproduce.item import Claimed, ItemFigure, PaperItem, StudyWalls, Trials
 from drystone_lab.runs.outcome import RunOutcome
 from drystone_lab.table import Rows
@@ -67,23 +66,14 @@ FILLED = 0.6
 class NoiseLevel(NamedTuple):
     """The walls of one set of stones by either rule, and the published wall where there is one."""
 
-    built: StudyWalls
+    ours: Trials  # By the paper's method
+    random: Trials
     reference: ReferenceWall | None
 
     @property
     def noise(self) -> int:
         """Of the stones, %."""
         return self.ours.wall.number
-
-    @property
-    def ours(self) -> Trials:
-        """Walls of the paper's method."""
-        return self.built[0]
-
-    def least(self, name: str, rule: str = "paper") -> float:
-        """Return the median of a figure, 0 when no wall has it: one that falls has none."""
-        (trials,) = self.built.of(rule)
-        return trials.median(name) or 0.0
 
 
 def published_of(levels: Sequence[NoiseLevel]) -> list[tuple[NoiseLevel, ReferenceWall]]:
@@ -103,7 +93,7 @@ def noise_findings(levels: Sequence[NoiseLevel]) -> Iterator[Claimed]:
     walls = [outcome for level in low for outcome in level.ours.outcomes]
     full = sum(map(is_full, walls))
     against = {
-        name: sum(one.least(name) > one.least(name, "random") for one in low)
+        name: sum(one.ours.least(name) > one.random.least(name) for one in low)
         for name in ("F_SF", "F_LR")
     }
     told = ", ".join(f"{name} in {count}" for name, count in against.items())
@@ -149,18 +139,18 @@ def _between(levels: Sequence[NoiseLevel]) -> Iterator[Claimed]:
     if len(levels) < 2:
         return
     worst = {
-        name: min(levels, key=lambda level, name=name: level.least(name))  # type: ignore[misc]
+        name: min(levels, key=lambda level, name=name: level.ours.least(name))  # type: ignore[misc]
         for name in ("F_SF", "F_LR")
     }
     words = "; ".join(
-        f"the lowest median {name} is that of {level.noise} % noise, {level.least(name):.3f}"
+        f"the lowest median {name} is that of {level.noise} % noise, {level.ours.least(name):.3f}"
         for name, level in worst.items()
     )
     there = levels[-1].noise == NOISES[-1]
     hardest = all(level.noise == NOISES[-1] for level in worst.values())
     yield Claimed("hardest", hardest if there else None, words=words)
     # The first and the last have a neighbour on one side only: a mere trend sets them apart.
-    filled = [level.least("F_SF") for level in levels]
+    filled = [level.ours.least("F_SF") for level in levels]
     above = {
         level.noise: filled[place] - median((filled[place - 1], filled[place + 1]))
         for place, level in enumerate(levels[1:-1], 1)
@@ -172,7 +162,7 @@ def _between(levels: Sequence[NoiseLevel]) -> Iterator[Claimed]:
 
 def _against_reference(key: str, levels: Sequence[NoiseLevel], name: str) -> Claimed:
     pairs = [
-        (level.noise, level.least(name), getattr(wall.metrics, name) or 0.0)
+        (level.noise, level.ours.least(name), getattr(wall.metrics, name) or 0.0)
         for level, wall in published_of(levels)
     ]
     # Sizes of walls are rounded to px, so that walls of all stones differ in later digits.
@@ -196,18 +186,14 @@ def _noise_pictures(levels: Sequence[NoiseLevel]) -> Iterator[ItemFigure]:
         resistance = "-" if figures["F_LR"] is None else f"{figures['F_LR']:.2f}"
         title = f"{level.ours.wall.name}\nF_SF {figures['F_SF'] or 0.0:.2f}, F_LR {resistance}"
         walls.append(level.ours.drawn(f"{title}, seed {seed}", place))
-    yield ItemFigure("fig22", plot_walls(walls, 2))
+    yield ItemFigure("fig22", pictures.sheet_of(walls, 2))
     yield _scatter(levels)
     yield _over_noise(levels)
 
 
 def _scatter(levels: Sequence[NoiseLevel]) -> ItemFigure:
-    groups = {
-        level.ours.wall.noise: list(
-            zip(level.ours.values("F_LR"), level.ours.values("F_SF"), strict=True)
-        )
-        for level in levels
-    }
+    every = [level.ours for level in levels]
+    groups = {one.wall.noise: (one.values("F_LR"), one.values("F_SF")) for one in every}
     ax = pictures.plot_two_figures(groups, across="F_LR", up="F_SF")
     ax.margins(0.09)
     offsets_pt = cycle(((9, 9), (9, -14), (-18, 9), (-18, -14)))  # neighbours lie together
@@ -280,13 +266,14 @@ def _series(levels: Sequence[NoiseLevel], name: str) -> list[list[tuple[int, flo
         for which in (True, False)
     )
     published = [(level.noise, getattr(wall.metrics, name)) for level, wall in published_of(levels)]
-    random = [(level.noise, level.built.of("random")[0].median(name)) for level in levels]
+    random = [(level.noise, level.random.median(name)) for level in levels]
     return [full, poor, published, random]
 
 
 NOISE = PaperItem(
     then=lambda found: [
-        NoiseLevel(group, reference_of(group[0].wall, group[0].data)) for group in found.by_wall
+        NoiseLevel(ours, random, reference_of(ours.wall, ours.data))
+        for ours, random in found.by_wall
     ],
     claims=noise_findings,
     tables={"reference": _references},

@@ -10,7 +10,7 @@ from scipy.stats import mannwhitneyu
 
 from drystone.model.wall import Wall
 from drystone_lab.cells import LEVEL, figures_of, metric_cells, placed_of
-from drystone_lab.pictures import plot_two_figures, plot_walls
+from drystone_lab.pictures import plot_two_figures, sheet_of, wall_panel
 from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem, StudyWalls, Trials
 from drystone_lab.runs.spec import Changes, generated, published
 from drystone_lab.table import Rows
@@ -66,11 +66,8 @@ def _rounded_pictures(found: StudyWalls) -> Iterator[ItemFigure]:
         title = f"{one.wall.name}\nF_SF {filling}, F_AV {interlocking} %"
         title += f", seed {one.specs[one.middle].seed}"
         walls.append(one.drawn(title, one.middle))
-    yield ItemFigure("fig26", plot_walls(walls, 2))
-    groups = {
-        one.wall.name: list(zip(one.values("F_SF"), one.values("F_AV"), strict=True))
-        for one in found
-    }
+    yield ItemFigure("fig26", sheet_of(walls, 2))
+    groups = {one.wall.name: (one.values("F_SF"), one.values("F_AV")) for one in found}
     ax = plot_two_figures(groups, across="F_SF", up="F_AV, %")
     ax.legend(fontsize=7, frameon=False, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2)
     yield ItemFigure("fig27", ax.figure)
@@ -221,8 +218,7 @@ def _bricks(found: Bricks) -> Rows:
         courses = courses_of(bricks_of(wall), HEIGHT_PX, round(HEIGHT_PX * aspect))
         yield (
             aspect, one.wall.said, one.way, f"{spec.width:g} x {spec.height:g}",
-            *placed_of(outcome), *metric_cells(outcome.figures), courses.lying, courses.in_course,
-            courses.courses, courses.joints, courses.crossed,
+            *placed_of(outcome), *metric_cells(outcome.figures), *courses,
         )  # fmt: skip
 
 
@@ -233,8 +229,8 @@ def _bricks_picture(found: Bricks) -> ItemFigure:
         # Bricks are one cluster: a colour each tells them apart, as in the paper.
         colours = {brick: number for number, brick in enumerate(sorted(outcome.clusters), 1)}
         title = f"aspect {aspect:g}, from {one.way}: F_SF {outcome.figures['F_SF']:.2f}"
-        walls.append((title, wall, colours))
-    return ItemFigure("figB34", plot_walls(walls, len(ASPECTS)))
+        walls.append(wall_panel(title, wall, colours))
+    return ItemFigure("figB34", sheet_of(walls, len(ASPECTS)))
 
 
 BRICKS = PaperItem(

@@ -16,7 +16,7 @@ from drystone.poses import PoseBook
 from drystone.selection.sampling import Sampling
 from drystone_lab import timed_walls
 from drystone_lab.cells import metric_cells, placed_of, trend
-from drystone_lab.pictures import plot_growth, plot_walls, step_time_panels
+from drystone_lab.pictures import plot_growth, sheet_of, step_time_panels, wall_panel
 from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem, StudyWalls
 from drystone_lab.table import Rows
 from drystone_lab.timed_walls import SAMPLINGS, TimedWall, fitted, parts_ms, three_digits
@@ -241,8 +241,8 @@ def _scales_pictures(found: ScaledWalls) -> Iterator[ItemFigure]:
         figures = one.outcomes[0].figures
         title = f"scale {scale:g}: {wall.size} px, {figures['placed']} stones, "
         title += f"F_SF {figures['F_SF']:.2f}"
-        walls.append((title, one.built(), colours))
-    yield ItemFigure("fig29", plot_walls(walls, 2))
+        walls.append(wall_panel(title, one.built(), colours))
+    yield ItemFigure("fig29", sheet_of(walls, 2))
     figure = Figure(figsize=(6.4, 4.0))
     series = {
         "whole wall": [(float(wall.pixels), wall.seconds) for wall in found.timed.values()],

@@ -23,14 +23,7 @@ from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LimitResult, LimitStatus
 from drystone_lab import cells, walls
 from drystone_lab.cells import METRICS, rounded
-from drystone_lab.pictures import (
-    Panel,
-    group_panels,
-    plot_two_figures,
-    plot_walls,
-    sheet_of,
-    wall_aspect,
-)
+from drystone_lab.pictures import Panel, group_panels, plot_two_figures, sheet_of, wall_aspect
 from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem, StudyWalls, Trials
 from drystone_lab.reproduce.items import ITEMS
 from drystone_lab.runs.spec import Changes
@@ -95,7 +88,7 @@ def _rules(case: BaseCase) -> Rows:
 def _pictures(case: BaseCase) -> Iterator[ItemFigure]:
     name = case.trials.wall.name
     title = f"{name}, seed {case.trials.specs[0].seed}"
-    yield ItemFigure("fig14", plot_walls([case.trials.titled(title)], 1))
+    yield ItemFigure("fig14", sheet_of([case.trials.titled(title)], 1))
     for rule, result in case.mechanisms:
         if result.mechanism is not None:
             falls = result.status is LimitStatus.UNSTABLE
@@ -229,7 +222,7 @@ BETA = PaperItem(pictures=lambda found: [_beta_picture(found)])
 
 
 def _sampling_claims(found: StudyWalls) -> Iterator[Claimed]:
-    counts = {one.way: one.median("candidates") or 0.0 for one in found}
+    counts = {one.way: one.least("candidates") for one in found}
     ratios = (f"{way} {count / counts['variant']:.2f}" for way, count in counts.items())
     # The paper counts sub-iterations: whether that agrees cannot be told.
     yield Claimed("twice", None, ratios=", ".join(ratios))
@@ -248,17 +241,14 @@ SAMPLING = PaperItem(claims=_sampling_claims)
 
 def _stabilised_claims(found: StudyWalls) -> Iterator[Claimed]:
     for group in found.by_wall:
-        filled = {one.way: one.median("F_SF") or 0.0 for one in group}
+        filled = {one.way: one.least("F_SF") for one in group}
         best = max(filled, key=lambda way: filled[way])
         yield Claimed("together", best == "both", name=group.name, best=best)
 
 
 def _stabilised_pictures(found: StudyWalls) -> Iterator[ItemFigure]:
     for number, group in enumerate(found.by_wall, 1):
-        points = {
-            one.way: tuple(zip(one.values("wedge_share"), one.values("F_SF"), strict=True))
-            for one in group
-        }
+        points = {one.way: (one.values("wedge_share"), one.values("F_SF")) for one in group}
         # The set is named in the picture itself, as one of them stands in for the paper's.
         across = f"{group.name}: area of wedges, % of the wall"
         ax = plot_two_figures(points, across=across, up="F_SF")

@@ -23,8 +23,7 @@ from drystone.planner.workshop import Workshop
 from drystone.selection.policies.learned import FEATURES, features
 from drystone_lab.rl.episode import ARRIVING, DrawSettings, Episode, draw_wall
 
-Floats32 = NDArray[np.float32]
-WallObservation = dict[str, Floats32]
+WallObservation = dict[str, NDArray[np.float32]]
 
 STONE = ("area", "width", "height")
 """Of an offer, beside its features: of the stone over the wall's, the same for all its offers but
