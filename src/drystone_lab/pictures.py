@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
+from scipy.stats import rankdata
 
 from drystone.drawing.canvas import add, draw_block, fit_axes
 from drystone.drawing.drawing import GROUND, MARGIN
@@ -149,11 +150,8 @@ def _shifts(values: Sequence[float]) -> list[float]:
     In the order of the values five columns take turns, so that the same values are always drawn at
     the same places.
     """
-    columns = (0.0, 0.5, -0.5, 1.0, -1.0) if len(values) > 1 else (0.0,)
-    shifts = [0.0] * len(values)
-    for rank, place in enumerate(sorted(range(len(values)), key=values.__getitem__)):
-        shifts[place] = SPREAD * columns[rank % len(columns)]
-    return shifts
+    ranks = rankdata(values, "ordinal").astype(int)
+    return [SPREAD * (-1.0, 0.0, 0.5, -0.5, 1.0)[rank % 5] for rank in ranks]
 
 
 PART_COLOURS: Mapping[Part, str] = {

@@ -1,9 +1,7 @@
 """F_AV and F_AH by another sensible definition, against walls that suit only the first.
 
-A search finds walls that are good by the definition it goes by.  This one is used by no search; it
-differs in what DESIGN 5 had to choose: the resolution, and so how wide joints are; where paths
-start, that they end where they like and cannot pass by the wall; that all of them count and not
-the shortest alone.
+A search finds walls that are good by the definition it goes by; no search goes by this one.  It
+differs in what DESIGN 5 had to choose.
 """
 
 import numpy as np

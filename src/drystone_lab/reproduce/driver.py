@@ -124,16 +124,17 @@ def write_page(
     `misses` are title, section and error of items that could not be made when they were last asked
     for; they may have a record of an earlier time all the same.  `order` has the names of all.
     """
-    sections = {name: {"name": name, **miss} for name, miss in misses.items()}
-    for record in records:
-        name = record["name"]
-        error = misses.get(name, {}).get("error")
-        sections[name] = {**record, "prefix": f"{name}/", "error": error}
+    made = {record["name"]: {**record, "prefix": f"{record['name']}/"} for record in records}
+    sections = [
+        {"name": name, "error": None, **misses.get(name, {}), **made.get(name, {})}
+        for name in order
+        if name in made or name in misses
+    ]
     return _write(
         path,
         title="The paper's tables and figures, made again",
         lead=lead(records, len(order)),
-        sections=[sections[name] for name in order if name in sections],
+        sections=sections,
         made=made_rows(records),
         up="",
     )
