@@ -21,6 +21,12 @@ FIGURES = (PLACED, "F_SF", "F_AV", "F_AH", "F_LR")
 """The figures that are compared: share of the stones that is placed, and the paper's four; where
 walls were shaken the amplitude that they stand on a shaking table too."""
 
+NAMES = {PLACED: "placed share", SHAKE: "PGA, g", "seconds": "wall, s"}
+"""What figures are called; others have names that say enough."""
+
+SHOWN = {NAMES.get(figure, figure): figure for figure in (*FIGURES, SHAKE, "seconds")}
+"""Of a history: what each is called, and which it is."""
+
 DECIMALS = 9
 """Values that agree so far are equal: they differ by rounding errors of sums."""
 
@@ -79,9 +85,7 @@ def _comparable(result: KeptRun) -> tuple[float | None, ...]:
 def comparison(results: BenchResults) -> tuple[Table, ...]:
     """Return the figures of every method on every wall, on all walls, and the times."""
     figures, words = results.figures, BENCH["public"]
-    units = {PLACED: "placed share", SHAKE: "PGA, g"}
-    named = ((units.get(figure, figure), figure) for figure in figures)
-    titles = [text for name, short in named for text in (name, f"±{short}", f"best {short}")]
+    titles = [t for one in figures for t in (NAMES.get(one, one), f"±{one}", f"best {one}")]
     columns = {"<figures>": titles}
     each = {
         (wall, method): results.of(method, wall)
@@ -318,13 +322,6 @@ def medians_of(runs: Sequence[KeptRun]) -> tuple[Medians, ...]:
         for key, group in groups.items()
     ]
     return tuple(sorted(found, key=lambda m: (m.suite, m.method, version_order(m.version))))
-
-
-SHOWN = {
-    "placed share": PLACED, "F_SF": "F_SF", "F_AV": "F_AV", "F_AH": "F_AH", "F_LR": "F_LR",
-    "PGA, g": SHAKE, "wall, s": "seconds",
-}  # fmt: skip
-"""Of a history: what each is called, and which it is."""
 
 
 def history_table(medians: Sequence[Medians]) -> Table:

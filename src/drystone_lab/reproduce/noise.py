@@ -1,7 +1,6 @@
 """Figs. 22 to 24: polygons of eight noise levels; Fig. 25: orientations in steps (§5.3)."""
 
-from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import cycle
 from pathlib import Path
 from statistics import median
@@ -213,20 +212,28 @@ _POINTS: dict[str, Any] = {
     "linestyle": "", "markersize": 4, "alpha": 0.8, "markeredgecolor": OUTLINE_COLOUR,
     "markeredgewidth": 0.3,
 }  # fmt: skip
-SERIES: Mapping[str, dict[str, Any]] = {
-    f"F_SF > {FILLED:g}": {**_POINTS, "marker": "o", "color": CLUSTER_COLOURS[0]},
-    f"F_SF <= {FILLED:g}": {**_POINTS, "marker": "^", "color": CLUSTER_COLOURS[1]},
-    "published walls": {
-        "linestyle": (0, (5, 3)), "linewidth": 1.3, "marker": "s", "markersize": 3.5,
-        "color": CLUSTER_COLOURS[12], "zorder": 3,
-    },
-    "random choice, median": {
-        "linestyle": "dotted", "linewidth": 1.2, "marker": "x", "markersize": 4,
-        "color": OUTLINE_COLOUR, "zorder": 3,
-    },
+SERIES: Mapping[str, tuple[Callable[[NoiseLevel, str], list[float | None]], dict[str, Any]]] = {
+    f"F_SF > {FILLED:g}": (
+        lambda level, name: [one.figures[name] for one in level.ours.outcomes if is_full(one)],
+        {**_POINTS, "marker": "o", "color": CLUSTER_COLOURS[0]},
+    ),
+    f"F_SF <= {FILLED:g}": (
+        lambda level, name: [one.figures[name] for one in level.ours.outcomes if not is_full(one)],
+        {**_POINTS, "marker": "^", "color": CLUSTER_COLOURS[1]},
+    ),
+    "published walls": (
+        lambda level, name: [getattr(one.metrics, name) for _, one in published_of([level])],
+        {"linestyle": (0, (5, 3)), "linewidth": 1.3, "marker": "s", "markersize": 3.5,
+         "color": CLUSTER_COLOURS[12], "zorder": 3},
+    ),
+    "random choice, median": (
+        lambda level, name: [level.random.median(name)],
+        {"linestyle": "dotted", "linewidth": 1.2, "marker": "x", "markersize": 4,
+         "color": OUTLINE_COLOUR, "zorder": 3},
+    ),
 }  # fmt: skip
-"""Walls above and below the threshold of filling, as blue points and yellow triangles; lines of
-references and of a baseline."""
+"""What is shown of a level, and how: walls above and below the threshold of filling, as blue points
+and yellow triangles; lines of references and of a baseline."""
 
 SHIFTS = (0.0, 1.4, -1.4, 2.8, -2.8)
 """Walls of one level in turn, so that they do not hide each other; % of noise."""
@@ -236,14 +243,12 @@ def _over_noise(levels: Sequence[NoiseLevel]) -> ItemFigure:
     """Draw the four figures over the noise, with one legend above."""
     sheet, axes = pictures.panel_sheet(len(METRICS), 2, (3.9, 2.8))
     for ax, name in zip(axes, ("F_SF", "F_LR", "F_AV", "F_AH"), strict=True):
-        for (words, look), pairs in zip(SERIES.items(), _series(levels, name), strict=True):
-            seen: Counter[int] = Counter()
+        for words, (values_of, look) in SERIES.items():
             x, y = [], []
-            for noise, value in pairs:
-                if value is not None:
-                    x.append(noise + SHIFTS[seen[noise] % len(SHIFTS)])
-                    y.append(value)
-                    seen[noise] += 1
+            for level in levels:
+                found = [value for value in values_of(level, name) if value is not None]
+                x += [level.noise + shift for _, shift in zip(found, cycle(SHIFTS), strict=False)]
+                y += found
             ax.plot(x, y, label=words, gid=words, **look)
         pictures.name_axes(ax, "noise, %", name if name in {"F_SF", "F_LR"} else f"{name}, %")
         ax.grid(axis="y", color=GREY, linewidth=0.3, alpha=0.5)
@@ -252,22 +257,6 @@ def _over_noise(levels: Sequence[NoiseLevel]) -> ItemFigure:
     named = axes[0].get_legend_handles_labels()
     sheet.legend(*named, fontsize=7, frameon=False, loc="outside upper center", ncols=4)
     return ItemFigure("fig24", sheet)
-
-
-def _series(levels: Sequence[NoiseLevel], name: str) -> list[list[tuple[int, float | None]]]:
-    """Return noise and value of what each of :data:`SERIES` shows."""
-    full, poor = (
-        [
-            (level.noise, outcome.figures[name])
-            for level in levels
-            for outcome in level.ours.outcomes
-            if is_full(outcome) is which
-        ]
-        for which in (True, False)
-    )
-    published = [(level.noise, getattr(wall.metrics, name)) for level, wall in published_of(levels)]
-    random = [(level.noise, level.random.median(name)) for level in levels]
-    return [full, poor, published, random]
 
 
 NOISE = PaperItem(
