@@ -22,7 +22,7 @@ def found(true):
     """What is said of a block model beside the plan, whose wall is built again once."""
     replay = replay_plan(true.plan, true.stones)
     model = wall_model(replay.wall, replay.settings)
-    return lambda blocks: check_blocks(blocks, true.plan, replay, model)
+    return lambda blocks: [*check_blocks(blocks, true.plan, replay, model)]
 
 
 def block(blocks, its_id):

@@ -51,7 +51,7 @@ def found(wedge, *more, **limits):
     blocks = model(wedge, *more)
     wall = no_polygons().added([box(0, 0.01, 5, 8), box(10, 0.01, 15, 5), SLAB, wedge])
     limits = replace(LIMITS, **limits)
-    problems = check_settled_wedge(STEP, wedge, blocks, SLAB, wall, WIDTH, limits)
+    problems = [*check_settled_wedge(STEP, wedge, blocks, SLAB, wall, WIDTH, limits)]
     assert all(problem.step == 3 for problem in problems)
     return [f"{problem.code} {problem.message}" for problem in problems]
 

@@ -1,6 +1,6 @@
 """The block model beside a plan of outlines is that of its poses (E238)."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -25,7 +25,7 @@ SAME_WAY = 1e-3
 
 def check_blocks(
     content: Any, plan: Plan, replay: Replay, model: RigidBlockModel | None
-) -> list[Problem]:
+) -> Iterator[Problem]:
     """Compare a block model with the plan of outlines that it lies beside (E238).
 
     `content` is that of blocks.json, or words that say why it has none.  `model` is that of the
@@ -33,50 +33,48 @@ def check_blocks(
     """
     if not isinstance(content, Mapping):
         why = f": {content}" if isinstance(content, str) else "."
-        return [_problem(f"{FILE} is not a block model{why}")]
+        yield _problem(f"{FILE} is not a block model{why}")
+        return
     try:
         polygons, claimed = polygons_from_json(content), model_from_json(content)
     except DrystoneError as error:
-        return [_problem(f"{FILE} is not a block model: {error.where}: {error.what}")]
+        yield _problem(f"{FILE} is not a block model: {error.where}: {error.what}")
+        return
     px = plan.px_per_m or 1.0
     outlines = {block: corners * px for block, corners in polygons.items()}
-    problems = _check_outlines(outlines, replay)
+    yield from _check_outlines(outlines, replay)
     # Of another density, or not free to move: no plan has them.
     odd = [b.id for b in claimed.blocks if b.density != 1.0 or b.fixed or b.held]
     if odd:
-        said = f"of another density, fixed or held in {FILE}: {', '.join(map(str, odd))}."
-        problems.append(_problem(said))
-    if any(abs(claimed.friction(face) - replay.settings.mu) > 1e-9
-           for face in claimed.interfaces):  # fmt: skip
-        problems.append(_problem(f"friction in {FILE} is not mu = {replay.settings.mu:g}."))
+        named = ", ".join(map(str, odd))
+        yield _problem(f"of another density, fixed or held in {FILE}: {named}.")
+    mu = replay.settings.mu
+    if any(abs(claimed.friction(face) - mu) > 1e-9 for face in claimed.interfaces):
+        yield _problem(f"friction in {FILE} is not mu = {mu:g}.")
     if model is not None:
         theirs, ours = _by_pair(claimed, px), _by_pair(model, 1.0)
         for pair in sorted({*theirs, *ours}):
             if not _same(theirs.get(pair, []), ours.get(pair, [])):
                 name = f"{pair[0] or 'the ground'} and {pair[1]}"
                 said = f"the contacts between {name} in {FILE} are not those of their outlines."
-                problems.append(_problem(said))
-    return problems
+                yield _problem(said)
 
 
-def _check_outlines(outlines: Mapping[int, Points], replay: Replay) -> list[Problem]:
+def _check_outlines(outlines: Mapping[int, Points], replay: Replay) -> Iterator[Problem]:
     """Compare ids and polygons, source px."""
     pieces = {piece.id: piece for piece in replay.pieces}
-    problems = [
-        _problem(f"{FILE} has a block {block}, which the plan does not place.")
-        for block in sorted(set(outlines) - set(pieces))
-    ]
+    for block in sorted(set(outlines) - set(pieces)):
+        yield _problem(f"{FILE} has a block {block}, which the plan does not place.")
     for block, piece in pieces.items():
         name, step = piece_name(piece.step), piece.step.step
         if block not in outlines:
-            problems.append(_problem(f"{name} is not in {FILE}.", step))
+            yield _problem(f"{name} is not in {FILE}.", step)
         elif piece.corners is not None:
             lines = [shapely.LinearRing(corners) for corners in (outlines[block], piece.corners)]
             off = float(shapely.hausdorff_distance(*lines))
             if not off <= NEAR_PX:
                 said = f"the outline of {name} in {FILE} is {off:.3g} source px from its pose."
-                problems.append(_problem(said, step))
-    return problems
+                yield _problem(said, step)
 
 
 def _by_pair(model: RigidBlockModel, px: float) -> dict[tuple[int, int], list[Interface]]:

@@ -1,5 +1,6 @@
 """Check a plan: build its wall again and verify every claim (DESIGN 2, 4.9)."""
 
+from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from typing import Any, Literal
 
@@ -116,22 +117,20 @@ def check_plan(
     )
 
 
-def _check_pieces(replay: Replay, reference: Reference) -> list[Problem]:
+def _check_pieces(replay: Replay, reference: Reference) -> Iterator[Problem]:
     """Verify what each step says by itself."""
-    problems = []
     for piece in replay.pieces:
         if piece.step.kind == "stone":
-            problems += claims.check_stone_claims(piece.step, reference)
+            yield from claims.check_stone_claims(piece.step, reference)
             if piece.corners is not None:
                 stone = reference.stones.by_id(piece.step.stone)
                 centroid_px = source_points([piece.step.centroid], replay.site)[0]
                 within_px = replay.settings.settle.outline_px
-                problems += pieces.check_outline(
+                yield from pieces.check_outline(
                     piece.step, stone, centroid_px, piece.corners, within_px
                 )
         elif isinstance(piece.item, Wedge) and not replay.exact:
-            problems += pieces.check_polygon(piece.step, piece.item, replay.site)
-    return problems
+            yield from pieces.check_polygon(piece.step, piece.item, replay.site)
 
 
 def _check_stages(
@@ -172,27 +171,26 @@ def _check_stages(
     return models, prefixes, problems
 
 
-def _check_image(replay: Replay, wall_labels: Labels) -> list[Problem]:
+def _check_image(replay: Replay, wall_labels: Labels) -> Iterator[Problem]:
     """Compare wall.png with the rebuilt wall, stone by stone (E236)."""
     if wall_labels.shape != replay.labels.shape:
         height, width = wall_labels.shape
         size = f"{replay.site.width_px} x {replay.site.height_px}"
-        return [Problem("E236", None, f"wall.png is {width} x {height} px, not {size}.")]
+        yield Problem("E236", None, f"wall.png is {width} x {height} px, not {size}.")
+        return
     different = wall_labels != replay.labels
     seen, counts = np.unique(
         np.concatenate([wall_labels[different], replay.labels[different]]), return_counts=True
     )
     steps = {piece.id: piece.step for piece in replay.pieces}
-    problems = []
     for label, count in zip(seen.tolist(), counts.tolist(), strict=True):
         if label in steps:
             step = steps[label]
             message = f"{count} px of {step.kind} {label} in wall.png are not those of its pose."
-            problems.append(Problem("E236", step.step, message))
+            yield Problem("E236", step.step, message)
         elif label:
             message = f"wall.png has {count} px of {label}, which the plan does not place."
-            problems.append(Problem("E236", None, message))
-    return problems
+            yield Problem("E236", None, message)
 
 
 def _outlines(replay: Replay) -> list[tuple[int, shapely.Geometry]]:
@@ -229,19 +227,17 @@ def _worst_area(replay: Replay) -> tuple[float, int | None]:
 
 def _notes(
     plan: Plan, stones: StoneSet, replay: Replay, wall_labels: Labels | None, blocks: Any
-) -> list[str]:
-    notes = []
+) -> Iterator[str]:
     if not plan.source["path"]:
-        notes.append("The stones were given by a program: there is no file to compare bytes with.")
+        yield "The stones were given by a program: there is no file to compare bytes with."
     elif not (plan.source["sha256"] and stones.source.sha256):
-        notes.append("The bytes of the source were not compared: one of the digests is missing.")
+        yield "The bytes of the source were not compared: one of the digests is missing."
     if wall_labels is None:
-        notes.append("wall.png was not compared.")
+        yield "wall.png was not compared."
     if blocks is None and replay.exact and plan.steps:
-        notes.append("There is no blocks.json to compare; `analyse` and exports need it.")
+        yield "There is no blocks.json to compare; `analyse` and exports need it."
     if replay.broken_at is not None:
-        notes.append(
+        yield (
             f"From step {replay.broken_at} on the wall cannot be built: stability, indices and "
             "wedges from there, and the metrics, were not checked."
         )
-    return notes

@@ -1,5 +1,6 @@
 """What a plan claims of its stones, actions and wall, computed again or built in an engine."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass, fields, replace
 
 from drystone.clusters import cluster_stones
@@ -68,10 +69,8 @@ def check_sturdy(stage: Stage, settings: PlannerSettings) -> list[Problem]:
         return []
     if found.failed:
         return [Problem("E230", stage.last.step, f"{UNKNOWN} with less friction and contact.")]
-    message = (
-        "the wall needs friction of upright faces, or friction or gaps at their limit, to stand."
-    )
-    return [Problem("E237", stage.last.step, message)]
+    needs = "friction of upright faces, or friction or gaps at their limit, to stand."
+    return [Problem("E237", stage.last.step, f"the wall needs {needs}")]
 
 
 def check_stands(stage: Stage, resistance: LateralResistance | None) -> list[Problem]:
@@ -130,9 +129,8 @@ class Reference:
         return cls(stones, settings, book, cluster_stones(stones, book, settings.clusters), stock)
 
 
-def check_source(plan: Plan, stones: StoneSet) -> list[Problem]:
+def check_source(plan: Plan, stones: StoneSet) -> Iterator[Problem]:
     """Compare the stones with those that the plan was made from (E210, E211) and leaves (E216)."""
-    problems = []
     claimed, source = plan.source, stones.source
     # No file has the bytes of an array that a program made; the stones are compared themselves.
     known = claimed["path"] and claimed["sha256"] and source.sha256
@@ -141,80 +139,70 @@ def check_source(plan: Plan, stones: StoneSet) -> list[Problem]:
             f"the stones were read from other bytes (sha256 {source.sha256[:12]}...) than the "
             f"plan's ({claimed['sha256'][:12]}...)."
         )
-        problems.append(Problem("E210", None, message))
+        yield Problem("E210", None, message)
     facts = {"stones": len(stones), "width_px": source.width_px, "height_px": source.height_px}
     if source.files or "files" in claimed:
         facts["files"] = list(source.files)  # type: ignore[assignment]
-    problems += [
-        Problem("E211", None, f"source.{name} is {claimed.get(name)} by the plan, found {found}.")
-        for name, found in facts.items()
-        if claimed.get(name) != found
-    ]
+    for name, found in facts.items():
+        if claimed.get(name) != found:
+            message = f"source.{name} is {claimed.get(name)} by the plan, found {found}."
+            yield Problem("E211", None, message)
     placed = {step.stone for step in plan.stone_steps}
     left = [stone.id for stone in stones if stone.id not in placed]
     if sorted(plan.unused) != left:
-        message = f"unused is {list(plan.unused)} by the plan, found {left}."
-        problems.append(Problem("E216", None, message))
-    return problems
+        yield Problem("E216", None, f"unused is {list(plan.unused)} by the plan, found {left}.")
 
 
-def check_choice(plan: Plan, settings: PlannerSettings) -> list[Problem]:
+def check_choice(plan: Plan, settings: PlannerSettings) -> Iterator[Problem]:
     """Verify that the settings allow the stones that the steps place, in their order (E239)."""
-    problems, last = [], 0
+    last = 0
     for step in plan.stone_steps:
         if step.stone in settings.ban:
-            problems.append(Problem("E239", step.step, f"stone {step.stone} is banned."))
+            yield Problem("E239", step.step, f"stone {step.stone} is banned.")
         if settings.order == "given" and step.stone < last:
             message = f"stone {step.stone} comes after stone {last} in an order that is given."
-            problems.append(Problem("E239", step.step, message))
+            yield Problem("E239", step.step, message)
         last = max(last, step.stone)
-    return problems
 
 
-def check_stone_claims(step: StoneStep, reference: Reference) -> list[Problem]:
+def check_stone_claims(step: StoneStep, reference: Reference) -> Iterator[Problem]:
     """Verify what a step says of its stone: centroid (E225), cluster (E233), turning (E235)."""
     stone = reference.stones.by_id(step.stone)
-    problems = []
     pairs = zip(step.source_centroid, stone.centroid, strict=True)
     if any(differs(claimed, found, TOLERANCE) for claimed, found in pairs):
         message = (
             f"source_centroid is {list(step.source_centroid)} by the plan, "
             f"found {list(stone.centroid)}."
         )
-        problems.append(Problem("E225", step.step, message))
+        yield Problem("E225", step.step, message)
     cluster = reference.clusters[step.stone]
     if step.cluster != cluster:
         message = f"cluster is {step.cluster} by the plan, found {cluster}."
-        problems.append(Problem("E233", step.step, message))
+        yield Problem("E233", step.step, message)
     wrong = _wrong_turning(step, reference)
     if wrong is not None:
-        problems.append(Problem("E235", step.step, wrong))
-    return problems
+        yield Problem("E235", step.step, wrong)
 
 
 def check_indices(
     stage: Stage, resistance: LateralResistance, reference: Reference, units_per_px: float
-) -> list[Problem]:
+) -> Iterator[Problem]:
     """Verify the indices of an action on the landscape before it (E232)."""
-    step = stage.stone
-    group = stage.group
-    claimed_height = step.course_height
+    step, claimed_height = stage.stone, stage.stone.course_height
     indices, course_height = action_indices(
         Landscape.of(stage.before, step.side),
-        group,
+        stage.group,
         resistance,
         None if claimed_height is None else claimed_height / units_per_px,
         reference.stock.narrowest_px,
     )
-    problems = []
     if claimed_height is not None and course_height is None:
         message = f"course_height is {claimed_height} by the plan, but the stone has a neighbour."
-        problems.append(Problem("E232", step.step, message))
+        yield Problem("E232", step.step, message)
     for name, found in indices.as_dict().items():
         claimed = step.indices.get(name)
         if differs(claimed, found, ALPHA_TOLERANCE if name.startswith(_BY_STATICS) else TOLERANCE):
-            problems.append(Problem("E232", step.step, contradicted(name, claimed, found)))
-    return problems
+            yield Problem("E232", step.step, contradicted(name, claimed, found))
 
 
 def recompute_metrics(plan: Plan, replay: Replay, model: RigidBlockModel | None) -> PlanMetrics:
@@ -230,9 +218,8 @@ def recompute_metrics(plan: Plan, replay: Replay, model: RigidBlockModel | None)
     return plan_metrics(build, resistance, others)
 
 
-def check_metrics(claimed: PlanMetrics, found: PlanMetrics) -> list[Problem]:
+def check_metrics(claimed: PlanMetrics, found: PlanMetrics) -> Iterator[Problem]:
     """Compare the figures of merit of the whole wall (E234)."""
-    problems = []
     for field in fields(PlanMetrics):
         plan_says, value = getattr(claimed, field.name), getattr(found, field.name)
         tolerance = ALPHA_TOLERANCE if field.name.startswith(_BY_STATICS) else TOLERANCE
@@ -244,8 +231,7 @@ def check_metrics(claimed: PlanMetrics, found: PlanMetrics) -> list[Problem]:
         if field.name.endswith("_coulomb") and value is not None and plan_says is not None:
             value = min(value, plan_says)
         if differs(plan_says, value, tolerance):
-            problems.append(Problem("E234", None, contradicted(field.name, plan_says, value)))
-    return problems
+            yield Problem("E234", None, contradicted(field.name, plan_says, value))
 
 
 def _wrong_turning(step: StoneStep, reference: Reference) -> str | None:

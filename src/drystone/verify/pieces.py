@@ -5,6 +5,8 @@ from straight above (DESIGN 4.4); wedges touch what they hold and what holds the
 mason would cut (§3.7).
 """
 
+from collections.abc import Iterator
+
 import numpy as np
 import shapely
 from scipy import ndimage
@@ -121,7 +123,7 @@ def check_wedge(
     labels: Labels,
     settings: StabiliseSettings,
     mean_height_px: float,
-) -> list[Problem]:
+) -> Iterator[Problem]:
     """Verify the rules of wedging on the wall with the stone: contact (E223) and size (E224)."""
     # With what is right above and right below its pixels; the ground is 2^32-1.
     framed = np.pad(labels, ((1, 0), (0, 0)))
@@ -131,7 +133,7 @@ def check_wedge(
     holds = bool((framed[rows - 1, cols] == wedge.under).any())
     below = framed[rows + 1, cols]
     stands = bool(np.isin(below, (0, wedge.id, wedge.under), invert=True).any())
-    problems = _touching(step, holds=holds, stands=stands)
+    yield from _touching(step, holds=holds, stands=stands)
     heights = wedge.mask.sum(axis=0)
     smallest = settings.min_wedge_px
     largest = max(smallest, settings.max_wedge_height * mean_height_px)
@@ -141,8 +143,7 @@ def check_wedge(
             f"wedge {wedge.id} is {width} px wide and {low} to {high} px high; the settings allow "
             f"{smallest} px to a height of {largest:.6g} px."
         )
-        problems.append(Problem("E224", step.step, message))
-    return problems
+        yield Problem("E224", step.step, message)
 
 
 def check_settled_wedge(
@@ -153,50 +154,45 @@ def check_settled_wedge(
     wall: Polygons,
     width: float,
     limits: WedgeLimits,
-) -> list[Problem]:
+) -> Iterator[Problem]:
     """Verify the rules of wedging for a wedge that is an outline, source px: E223 and E224.
 
     The model, of the wall with the stone and its wedges, says what touches what.  `stone` lies on
     the wedge, `wall` are all outlines, and `width` is that of the site.
     """
     above, below = set(), set()  # what touches it from there
-    for interface in model.interfaces:
-        if step.id not in (interface.block, interface.other):
-            continue
-        mine = interface.block == step.id
-        up = interface.normal[1] if mine else -interface.normal[1]
-        other = interface.other if mine else interface.block
-        if up > 0.0:
-            below.add(other)
-        elif up < 0.0:
-            above.add(other)
+    for face in model.interfaces:
+        for mine, other, up in (
+            (face.block, face.other, face.normal[1]),
+            (face.other, face.block, -face.normal[1]),
+        ):
+            if mine == step.id and up != 0.0:
+                (below if up > 0.0 else above).add(other)
     stands = bool(below - {step.under})
-    problems = _touching(step, holds=step.under in above, stands=stands)
+    yield from _touching(step, holds=step.under in above, stands=stands)
     faults = list(limits.faults(WedgeShape.of(corners)))
     if squeezed_out(corners, stone, wall, width, limits):
         faults.append("nothing beside it at the end of the wall")
     if faults:
         message = f"no mason would cut wedge {step.id} (source px): {'; '.join(faults)}."
-        problems.append(Problem("E224", step.step, message))
-    return problems
+        yield Problem("E224", step.step, message)
 
 
-def check_polygon(step: WedgeStep, wedge: Wedge, site: Site) -> list[Problem]:
+def check_polygon(step: WedgeStep, wedge: Wedge, site: Site) -> Iterator[Problem]:
     """Verify that a wedge's polygon is that of its pixels, counter-clockwise (E222)."""
     area, *_ = area_and_centroid(working_points(step.polygon, site))
-    if abs(area - wedge.area_px) <= 1e-6 * max(1.0, wedge.area_px):
-        return []
-    message = (
-        f"the polygon of wedge {wedge.id} has an area of {area:.9g} working px (negative: "
-        f"clockwise), its pixels {wedge.area_px}."
-    )
-    return [Problem("E222", step.step, message)]
+    if not abs(area - wedge.area_px) <= 1e-6 * max(1.0, wedge.area_px):
+        message = (
+            f"the polygon of wedge {wedge.id} has an area of {area:.9g} working px (negative: "
+            f"clockwise), its pixels {wedge.area_px}."
+        )
+        yield Problem("E222", step.step, message)
 
 
-def _touching(step: WedgeStep, *, holds: bool, stands: bool) -> list[Problem]:
+def _touching(step: WedgeStep, *, holds: bool, stands: bool) -> Iterator[Problem]:
     """Say what a wedge does not touch (E223)."""
-    missing = {
-        f"wedge {step.id} does not touch stone {step.under} from below.": holds,
-        f"wedge {step.id} stands on nothing.": stands,
-    }
-    return [Problem("E223", step.step, said) for said, touches in missing.items() if not touches]
+    if not holds:
+        message = f"wedge {step.id} does not touch stone {step.under} from below."
+        yield Problem("E223", step.step, message)
+    if not stands:
+        yield Problem("E223", step.step, f"wedge {step.id} stands on nothing.")
