@@ -33,7 +33,7 @@ def prepare_choice(folder: Path) -> None:
 
 def write_choice(result: PlanResult, folder: Path) -> None:
     """Write the walls to choose from, a folder each, and one picture of all."""
-    walls = result.choice or (result,)  # a single pass has one
+    walls = _walls(result)
     for index, one in enumerate(walls, 1):
         place = _place(folder, index)
         make_folder(place)
@@ -60,23 +60,26 @@ def clear_choice(folder: Path, index: int = 1) -> None:
         (folder / FOLDER).rmdir()
 
 
-def print_choice(result: PlanResult) -> None:
-    """Print the walls to choose from, one a line."""
-    columns = " ".join(f"{name:>8}" for name in FIGURES)
-    print(f"\nwalls that none beats in every figure (pareto.png)\n{'':9} {columns}   stones")
-    for index, one in enumerate(result.choice or (result,), 1):
-        figures = _figures(one)
-        values = " ".join(f"{number(figures[name], FIGURES[name]):>8}" for name in FIGURES)
-        print(f"{FOLDER}/{index:02} {values} {len(one.plan.stone_steps):>8}")
-
-
 def choice_summary(result: PlanResult, folder: Path) -> list[dict[str, Any]]:
-    """Return the same for JSON."""
+    """Return the walls to choose from for JSON."""
     return [
         {"plan": str(_place(folder, index) / "plan.json"), "placed": len(one.plan.stone_steps)}
         | _figures(one)
-        for index, one in enumerate(result.choice or (result,), 1)
+        for index, one in enumerate(_walls(result), 1)
     ]
+
+
+def print_choice(walls: list[dict[str, Any]]) -> None:
+    """Print what :func:`choice_summary` returns, one wall a line."""
+    columns = " ".join(f"{name:>8}" for name in FIGURES)
+    print(f"\nwalls that none beats in every figure (pareto.png)\n{'':9} {columns}   stones")
+    for index, one in enumerate(walls, 1):
+        values = " ".join(f"{number(one[name], digits):>8}" for name, digits in FIGURES.items())
+        print(f"{FOLDER}/{index:02} {values} {one['placed']:>8}")
+
+
+def _walls(result: PlanResult) -> tuple[PlanResult, ...]:
+    return result.choice or (result,)  # a single pass has one
 
 
 def _figures(result: PlanResult) -> dict[str, float | None]:

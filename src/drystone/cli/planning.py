@@ -5,6 +5,7 @@ import math
 from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from drystone.cli import choice, keeping
 from drystone.cli.numbers import picture_size_px, refuse_outside, scale_notice
@@ -117,10 +118,10 @@ def _announce(request: PlanRequest) -> None:
     """Say what is planned with, and when its scale or its method is odd."""
     stones, px_per_m = request.stones, request.px_per_m
     if not request.quiet:
-        walls = request.settings.search.budget
-        seconds = None if walls == 1 else request.options.time
-        more = "" if seconds is not None or walls == 1 else f", {walls} walls"
-        more += "" if walls == 1 else " (--time, --budget)"
+        walls, seconds, more = request.settings.search.budget, None, ""
+        if walls > 1:
+            seconds = request.options.time
+            more = f"{'' if seconds is not None else f', {walls} walls'} (--time, --budget)"
         note(f"{read_line(stones, request.wall, px_per_m, seconds)}{more}")
     if request.method != request.options.method:
         note(
@@ -174,19 +175,20 @@ def _written_and_told(result: PlanResult, request: PlanRequest, keeper: keeping.
         keeper.end(result)
     except (DrystoneError, OSError) as error:
         failed = error
-    profile = profile_summary(result, request.options.jobs) if request.options.profile else None
+    more: dict[str, Any] = {}
+    if request.options.pareto:
+        more["pareto"] = choice.choice_summary(result, folder)
+    if request.options.profile:
+        more["profile"] = profile_summary(result, request.options.jobs)
     if request.options.json:
-        told = summary(result, folder)
-        if request.options.pareto:
-            told["pareto"] = choice.choice_summary(result, folder)
-        print_json(told | ({} if profile is None else {"profile": profile}))
+        print_json(summary(result, folder) | more)
     else:
         print_table(ending(result), rows(result, folder))
-        if request.options.pareto:
-            choice.print_choice(result)
-        if profile is not None:
+        if "pareto" in more:
+            choice.print_choice(more["pareto"])
+        if "profile" in more:
             title = "\nwhere the time went, and microseconds a candidate"
-            print_table(title, profile_rows(profile))
+            print_table(title, profile_rows(more["profile"]))
     if failed is not None:
         raise failed
     if not request.quiet:
