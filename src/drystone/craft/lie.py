@@ -161,28 +161,21 @@ def inward_edges(masonry: Masonry) -> Evidence:
     """Find end stones whose upper edge falls outwards."""
     left, right = masonry.ends
     # A stone from end to end has no inward side.
-    sides = dict.fromkeys(right - left, 1.0) | dict.fromkeys(left - right, -1.0)
-    ends = [edge for edge in edges(masonry) if edge.side == "upper" and edge.stone in sides]
-    if not ends:
+    sides = dict.fromkeys(right - left, "right") | dict.fromkeys(left - right, "left")
+    slopes, cases = [], []
+    for edge in edges(masonry):
+        if edge.side == "upper" and edge.stone in sides:
+            end = sides[edge.stone]
+            inward = edge.slope if end == "right" else -edge.slope
+            slopes.append(inward)
+            if inward < -masonry.settings.outward - 1e-9:
+                angle = f"{abs(edge.angle_deg):.0f}°"
+                words = f"upper edge at the {end} end falls outwards by {angle}"
+                cases.append(Case((edge.stone,), round(-inward, 6), words, (edge.line,)))
+    if not slopes:
         return Evidence(None, note="The wall has no two ends.")
-    inward = {edge.stone: sides[edge.stone] * edge.slope for edge in ends}
-    cases = [
-        Case(
-            (edge.stone,),
-            round(-inward[edge.stone], 6),
-            f"upper edge at the {'right' if sides[edge.stone] > 0 else 'left'} end falls outwards "
-            f"by {abs(edge.angle_deg):.0f}°",
-            (edge.line,),
-        )
-        for edge in ends
-        if inward[edge.stone] < -masonry.settings.outward - 1e-9
-    ]
-    figures = {
-        "mean inward slope": sum(inward.values()) / len(inward),
-        "end stones": float(len(inward)),
-    }
-    least = round(min(inward.values()), 9) + 0.0  # never -0
-    return Evidence(least, worst_first(cases), figures)
+    figures = {"mean inward slope": sum(slopes) / len(slopes), "end stones": float(len(slopes))}
+    return Evidence(round(min(slopes), 9) + 0.0, worst_first(cases), figures)  # never -0
 
 
 def level_top(masonry: Masonry) -> Evidence:

@@ -121,9 +121,8 @@ def outlined(placement: Placement, wedges: tuple[Wedge, ...]) -> list[Outlined]:
 
 def _paint(labels: Labels, window: tuple[slice, slice], mask: Mask, value: int) -> None:
     rows, cols = window
-    inside = 0 <= rows.start and rows.stop <= labels.shape[0]
-    inside = inside and 0 <= cols.start and cols.stop <= labels.shape[1]
-    if not inside:
+    height, width = labels.shape
+    if min(rows.start, cols.start) < 0 or rows.stop > height or cols.stop > width:
         raise ValueError(f"{value} leaves the site")
     view = labels[window]
     if view[mask].any():
