@@ -75,8 +75,10 @@ def test_numbers_of_numpy_are_numbers():
     plan = ds.plan_wall(rubble(), np.int64(100), np.float32(36), **wall).plan
     assert plan == ds.plan_wall(rubble(), 100, 36, seed=1, budget=1, scale=1.0).plan
     made = ds.PlannerSettings(mu=np.float64(0.5), ban=[np.uint8(3)])
-    for one in (made, made.updated({"mu": np.float32(0.5), "ban": np.array([3])})):
+    told = {"mu": np.float32(0.5), "ban": np.array([3]), "stop": {"failures": np.int64(2)}}
+    for one in (made, made.updated(told)):
         assert (one.mu, one.ban, type(one.mu), type(one.ban[0])) == (0.5, (3,), float, int)
+    assert made.updated(told).stop.failures == 2
 
 
 @pytest.mark.parametrize("package", ["drystone", "drystone_lab"])

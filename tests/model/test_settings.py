@@ -4,7 +4,6 @@ import dataclasses
 import math
 import re
 
-import numpy as np
 import pytest
 
 from drystone.model.settings import Ranged, ranged
@@ -54,10 +53,3 @@ def test_the_ends_of_a_range_are_in_it_where_they_are_allowed_and_choices_those_
 def test_settings_that_do_not_go_together_are_refused(changes, said):
     with pytest.raises(Exception, match=said):
         PlannerSettings().updated(changes)
-
-
-def test_numbers_and_arrays_of_numpy_are_numbers_and_lists():
-    told = {"mu": np.float32(0.5), "stop": {"failures": np.int64(2)}, "ban": np.array([3, 1])}
-    changed = PlannerSettings().updated(told)
-    assert (changed.mu, changed.stop.failures, changed.ban) == (0.5, 2, (3, 1))
-    assert [type(one) for one in PlannerSettings().updated({"pin": [np.int8(4)]}).pin] == [int]

@@ -12,7 +12,7 @@ from drystone.statics.limit import lateral_resistance
 from drystone.statics.result import LimitStatus
 from drystone.verify import check, claims
 from drystone.verify.check import PrefixAlpha, check_plan
-from drystone.verify.replay import PENETRATION_PX
+from drystone.verify.replay import PENETRATION_PX, rebuild_wall
 from tests.planner.scenes import read_again
 from tests.verify.exact_examples import GAP_PX, block_model, exact_example, hanging_example
 from tests.verify.examples import L_STONE, SLAB, WEDGE, example
@@ -57,7 +57,7 @@ def either(request):
 
 @pytest.mark.usefixtures("both_flow_rules")
 @pytest.mark.parametrize("make", [example, exact_example])
-@pytest.mark.parametrize(("scale", "px_per_m"), [(1.0, 137.0), (0.5, 200.0)])
+@pytest.mark.parametrize(("scale", "px_per_m"), [(1.0, None), (1.0, 137.0), (0.5, 211.3)])
 def test_true_plan_passes_in_any_unit_and_at_any_scale(make, scale, px_per_m):
     made = make(scale, px_per_m)
     plan, labels = read_again(made.plan), made.wall.labels
@@ -68,6 +68,8 @@ def test_true_plan_passes_in_any_unit_and_at_any_scale(make, scale, px_per_m):
     assert report.area_error == 0
     assert report.prefixes[0].alpha_left == pytest.approx(0.58)  # a square block slides
     assert [prefix.step for prefix in report.prefixes] == [1, 2, 4, 5, 6]
+    rebuilt = rebuild_wall(plan, made.stones).placements
+    assert [p.side for p in rebuilt] == [p.side for p in made.wall.placements]
     if make is exact_example:
         assert report.geometry == report.as_dict()["geometry"] == "exact"
         assert (report.overlap_depth, report.overlap_depth_at, report.buried) == (0.0, None, ())
