@@ -144,15 +144,15 @@ def level_beds(masonry: Masonry) -> Evidence:
         return Evidence(None, note="No stone is wide enough.")
     slopes = np.array([abs(edge.angle_deg) for edge in found])
     widths = np.array([edge.width for edge in found])
-    steep = [edge for edge in found if abs(edge.angle_deg) > masonry.settings.steep_deg + 1e-9]
     cases = []
-    for edge in steep:
-        angle, falls = abs(edge.angle_deg), "right" if edge.slope < 0 else "left"
-        words = f"{edge.side} edge falls to the {falls} by {angle:.0f}°"
-        cases.append(Case((edge.stone,), round(angle, 6), words, (edge.line,)))
+    for edge, angle in zip(found, slopes.tolist(), strict=True):
+        if angle > masonry.settings.steep_deg + 1e-9:
+            falls = "right" if edge.slope < 0 else "left"
+            words = f"{edge.side} edge falls to the {falls} by {angle:.0f}°"
+            cases.append(Case((edge.stone,), round(angle, 6), words, (edge.line,)))
     figures = {
         "steepest": float(slopes.max()),
-        "share of the edges that are too steep": len(steep) / len(found),
+        "share of the edges that are too steep": len(cases) / len(found),
     }
     return Evidence(round(float(slopes @ widths / widths.sum()), 9), worst_first(cases), figures)
 

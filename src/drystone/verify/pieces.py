@@ -160,16 +160,12 @@ def check_settled_wedge(
     The model, of the wall with the stone and its wedges, says what touches what.  `stone` lies on
     the wedge, `wall` are all outlines, and `width` is that of the site.
     """
-    above, below = set(), set()  # what touches it from there
-    for face in model.interfaces:
-        for mine, other, up in (
-            (face.block, face.other, face.normal[1]),
-            (face.other, face.block, -face.normal[1]),
-        ):
-            if mine == step.id and up != 0.0:
-                (below if up > 0.0 else above).add(other)
-    stands = bool(below - {step.under})
-    yield from _touching(step, holds=step.under in above, stands=stands)
+    # What touches it, with how far each normal into it points up.
+    touching = [(f.other, f.normal[1]) for f in model.interfaces if f.block == step.id]
+    touching += [(f.block, -f.normal[1]) for f in model.interfaces if f.other == step.id]
+    holds = any(other == step.under and up < 0.0 for other, up in touching)
+    stands = any(other != step.under and up > 0.0 for other, up in touching)
+    yield from _touching(step, holds=holds, stands=stands)
     faults = list(limits.faults(WedgeShape.of(corners)))
     if squeezed_out(corners, stone, wall, width, limits):
         faults.append("nothing beside it at the end of the wall")
