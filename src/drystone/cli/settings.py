@@ -110,7 +110,8 @@ def settings_from(arguments: argparse.Namespace) -> PlannerSettings:
                 rule_of(settings.selection_rule)  # the file may name one that is not there
         except UsageError as error:
             table = error.where.removeprefix("settings").strip() if error.code == "E123" else ""
-            raise _blamed(error, f"{path} [{table}]" if table else str(path)) from None
+            where = f"{path} [{table}]" if table else str(path)
+            raise UsageError(error.code, error.what, where=where, cure=error.cure) from None
     try:
         settings = settings.updated(_together(arguments.changes))
     except UsageError as error:
@@ -128,7 +129,7 @@ def settings_from(arguments: argparse.Namespace) -> PlannerSettings:
         try:
             asked = asked.updated(changes)
         except UsageError as error:
-            raise _blamed(error, where) from None
+            raise UsageError(error.code, error.what, where=where, cure=error.cure) from None
     return asked
 
 
@@ -153,11 +154,6 @@ def recorded_method(arguments: argparse.Namespace) -> str:
     }
     nearest = apart[arguments.method] == min(apart.values())
     return str(arguments.method) if nearest or not whole else "custom"
-
-
-def _blamed(error: UsageError, where: str) -> UsageError:
-    """Return an error of settings that says where the values came from."""
-    return UsageError(error.code, error.what, where=where, cure=error.cure)
 
 
 def _changes(
