@@ -10,7 +10,7 @@ from scipy import ndimage
 from skimage.measure import label
 
 from drystone.errors import InputError, LabelImageError, UsageError
-from drystone.io.masks import components
+from drystone.io.labels import components
 from drystone.io.read_stones import ReadSettings, read_stones
 from drystone.io.walls import read_wall
 from tests.io.known_stones import PIECES, compare, label_image, masks

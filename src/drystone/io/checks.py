@@ -9,7 +9,7 @@ from scipy import ndimage
 
 from drystone.errors import LabelImageError, Notice
 from drystone.io.files import listed
-from drystone.io.labels import Census, IdImage
+from drystone.io.labels import Census, IdImage, components
 from drystone.kernels.ids import counted
 from drystone.kernels.label_runs import label_runs, runs_in_pieces
 
@@ -338,7 +338,7 @@ def _stray(
     stray[stray] = sure if wall else sure | thin[census.index[stray] - 1]
     # What lies on the ground alone is a speck.
     at_stone = stray & ndimage.maximum_filter(stones & ~stray, 3)
-    found, _ = ndimage.label(stray, np.ones((3, 3)))
+    found, _ = components(stray)
     stray &= np.isin(found, found[at_stone])
     edges = np.count_nonzero(stones & ~census.solid)
     return stray if 0 < np.count_nonzero(stray) <= _FEW * edges else None

@@ -12,6 +12,7 @@ from drystone.errors import InputError, LabelImageError, Notice
 from drystone.io.files import several_pages
 from drystone.io.images import Picture
 from drystone.kernels.ids import counted, looked_up, numbered
+from drystone.kernels.raster import Mask
 
 MAX_ID = 2**32 - 1
 _GREY_TOLERANCE = 48
@@ -80,6 +81,12 @@ class IdImage:
     def stones(self) -> NDArray[np.bool_]:
         """True where the id is not that of the background, (h, w)."""
         return self.census.of(self.census.values != self.background)
+
+
+def components(mask: Mask) -> tuple[NDArray[np.int32], int]:
+    """Label the 8-connected components of a mask, from 1 in row order."""
+    found, count = ndimage.label(mask, np.ones((3, 3)))
+    return np.asarray(found, np.int32), int(count)
 
 
 def to_ids(picture: Picture, background: int) -> IdImage:
@@ -184,7 +191,7 @@ def _check_no_stone_of_zero(image: IdImage, ground: NDArray[np.bool_], *, named:
     inner = np.zeros_like(zero)
     inner[_RIM:-_RIM, _RIM:-_RIM] = True
     # Whether a piece as large as a stone has only ground around it.
-    found, count = ndimage.label(zero, np.ones((3, 3)))
+    found, count = components(zero)
     alone = np.bincount(found.ravel(), minlength=count + 1) >= _LEAST_PX
     alone[ndimage.maximum_filter(found, 3)[~ground & ~zero]] = False
     if named or (corners and not (zero & ~inner).any() and alone[1:].any()):

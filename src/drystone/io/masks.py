@@ -8,13 +8,12 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import ndimage
 
 from drystone.errors import InputError, LabelImageError, Notice
 from drystone.io.checks import blended
 from drystone.io.files import damaged, foreign, too_large, unfit, unusable
 from drystone.io.images import Picture, array_of
-from drystone.io.labels import Census, IdImage
+from drystone.io.labels import Census, IdImage, components
 from drystone.io.outlines_in.classes import Gathered
 from drystone.io.outlines_in.model import OutlineFile, trimmed
 from drystone.io.outlines_in.nested import not_stones, of_one_picture, said_of
@@ -24,7 +23,6 @@ from drystone.kernels.ids import numbered
 from drystone.kernels.raster import Mask
 
 _USUAL_STONE_VALUES = (1, 255, 65535, 2**32 - 1)
-_WHOLE = np.ones((3, 3), bool)
 _LOST = 0.2
 """Largest share of plain areas that a mask may lose: of ids 1 to 30 it is about a half."""
 _NOISE = 1 / 16
@@ -79,12 +77,6 @@ def find_mask(image: IdImage, wanted: bool | None, *, lossy: bool = False) -> Bi
     if len(grey.values) > 1 and _is_antialiased(grey, image.background):
         return _split(grey, image.background)
     return None
-
-
-def components(mask: Mask) -> tuple[NDArray[np.int32], int]:
-    """Label the 8-connected components of a mask, from 1 in row order."""
-    found, count = ndimage.label(mask, _WHOLE)
-    return np.asarray(found, np.int32), int(count)
 
 
 def _split(census: Census, background: int) -> BinaryMask:

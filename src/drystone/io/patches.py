@@ -13,7 +13,7 @@ from scipy import ndimage
 
 from drystone.errors import LabelImageError, Notice
 from drystone.io.files import MANY, listed, naming, short
-from drystone.io.labels import MAX_ID
+from drystone.io.labels import MAX_ID, components
 from drystone.io.read_settings import ReadSettings
 from drystone.kernels.ids import counted
 from drystone.kernels.polygons import Points
@@ -29,7 +29,6 @@ _MOST_SPECK_PX = 50
 
 LARGE = 1.5
 """Times the median area: smaller stones are not suspected of being two."""
-_WHOLE = np.ones((3, 3), bool)
 
 MOST_PIECES = 100_000
 """Of all stones of a picture: more are no stones but noise, and fill the memory."""
@@ -90,7 +89,7 @@ class StonePatch(PlacedMask):
     @cached_property
     def piece_areas_px(self) -> tuple[int, ...]:
         """Number of pixels of each 8-connected piece, in row order."""
-        found, count = ndimage.label(self.mask, _WHOLE)
+        found, count = components(self.mask)
         areas = counted(found, count)[1:]
         with naming(str(self)):
             check_count(len(areas))
@@ -100,7 +99,7 @@ class StonePatch(PlacedMask):
         """Return the 8-connected pieces, the largest first, equal ones in row order."""
         if len(self.piece_areas_px) == 1:
             return [self]
-        found, _ = ndimage.label(self.mask, _WHOLE)
+        found, _ = components(self.mask)
         pieces = []
         for label, (rows, cols) in enumerate(ndimage.find_objects(found), start=1):
             mask, row, col = found[rows, cols] == label, rows.start, cols.start

@@ -19,7 +19,7 @@ from drystone.io import checks, masks
 from drystone.io.files import foreign, given_bytes, listed, naming, short, too_large, unfit
 from drystone.io.images import BEGINNING, FORMATS, SUFFIXES, Picture, decode, format_of
 from drystone.io.json_text import json_in, json_of
-from drystone.io.labels import Census, IdImage, check_no_zero, to_ids
+from drystone.io.labels import Census, IdImage, check_no_zero, components, to_ids
 from drystone.io.outlines_in import annotations
 from drystone.io.outlines_in.classes import of_classes
 from drystone.io.outlines_in.dxf import is_dxf, read_dxf
@@ -152,7 +152,7 @@ def _read_picture(picture: Picture, source: Source, settings: ReadSettings) -> S
         patches = cut(image.census.index, np.where(values == image.background, 0, values))
         notices = image.notices
     else:
-        labels, count = masks.components(binary.mask)
+        labels, count = components(binary.mask)
         check_count(count)
         patches = cut(labels, np.arange(1, count + 1))
         least_px = math.ceil(smallest_stone_px(patches, settings, mask=True))

@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 import shapely
 from numpy.typing import NDArray
-from scipy import ndimage
 
 from drystone.errors import Notice
 from drystone.io.files import MANY, listed, short, too_large
+from drystone.io.labels import components
 from drystone.io.outlines_in.model import covered, room_around
 from drystone.io.patches import PlacedMask, enclosed
 
@@ -258,7 +258,7 @@ class _Shares:
     def _in_each_piece(self, i: int, parts: Sequence[int]) -> bool:
         """Tell a mask in several pieces, which no stone is, with smaller masks in each of them."""
         mask = self._masks[i]
-        labels, count = ndimage.label(mask.mask, np.ones((3, 3), bool))
+        labels, count = components(mask.mask)
         if not 1 < count <= _MOST_IN_PIECES:
             return False
         pieces = [PlacedMask(labels == n, mask.row, mask.col) for n in range(1, count + 1)]

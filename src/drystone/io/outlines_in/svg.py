@@ -294,11 +294,6 @@ def _matrix_of(name: str, numbers: list[float]) -> Matrix:
     return matrix
 
 
-def moved(matrix: Matrix, points: Points) -> Points:
-    """Return points under a transform."""
-    return np.asarray(points @ matrix[:2, :2].T + matrix[:2, 2])
-
-
 def user_units(attributes: Mapping[str, str], name: str, view: View | None) -> float:
     """Return an attribute that is a length, 0 when there is none; ValueError when it is none."""
     value, unit = length(attributes.get(name, "0"))
@@ -390,7 +385,6 @@ NOTHING = {"", "none", "initial", "unset", "revert", "auto"}
 _COMMENT = re.compile(r"/\*.*?(?:\*/|$)", re.DOTALL)
 _RULE = re.compile(r"([^{}]*+)\{([^{}]*+)\}")
 _SIMPLE = re.compile(r"(\*|[\w-]*+)([.#][\w-]++)?+")
-_PLAIN = "Save it as plain SVG, with attributes instead of styles."
 
 
 class Styles:
@@ -465,7 +459,8 @@ def _rules(text: str, condition: str) -> Iterator[tuple[str, Mapping[str, str]]]
                 if not said.keys() - _ASIDE:
                     continue
                 first = min(said.keys() - _ASIDE)
-                raise ValueError(f"its style sheet says {first} for {what!r}. {_PLAIN}")
+                cure = f"{PLAIN}, with attributes instead of styles."
+                raise ValueError(f"its style sheet says {first} for {what!r}. {cure}")
             yield selector.removeprefix("*") if selector[1:] else selector, said
 
 
@@ -734,7 +729,8 @@ class _Walk:
         if len(closed) < len(lines):
             self.aside[f"open lines in {kind}"] += len(lines) - len(closed)
         self._spend(model.TOO_MANY_CORNERS, sum(map(len, closed)))
-        rings = tuple(model.within_reach(moved(place.matrix, points)) for points in closed)
+        turn, shift = place.matrix[:2, :2].T, place.matrix[:2, 2]
+        rings = tuple(model.within_reach(points @ turn + shift) for points in closed)
         if not rings:
             return
         area = Area(rings, "evenodd" if place.rule == "evenodd" else "nonzero")
