@@ -13,12 +13,12 @@ import zlib
 import ezdxf
 import numpy as np
 from fuzz.pictures import npy, pillow
+from fuzz.tiffs import write_tiff
 
 from drystone.io.read_settings import ReadSettings
 from tests.io import test_annotations
 from tests.io.pictures import png_of, two_stones
 from tests.io.test_dxf import text_of
-from tests.io.test_tiff_kinds import tiff
 
 EPS = b"%!PS-Adobe-3.0 EPSF-3.0\n%%BoundingBox: 0 0 60 36\n%%EndComments\n(x) print\n%%EOF\n"
 STONE, USE = '<rect width="9" height="9"/>', "<use href='#p'/>"
@@ -27,7 +27,7 @@ STONE, USE = '<rect width="9" height="9"/>', "<use href='#p'/>"
 def tiff_of(tags=None, **more):
     """A TIFF of 6 x 4 px, with some tags of other values."""
     tags = {tag: [value] for tag, value in (tags or {}).items()}
-    return tiff(np.arange(24).reshape(4, 6), tags=tags, **more)
+    return write_tiff(np.arange(24).reshape(4, 6), tags=tags, **more)
 
 
 def many_entries():
