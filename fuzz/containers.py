@@ -37,6 +37,23 @@ def write_png(chunks: Iterable[Chunk]) -> bytes:
     )
 
 
+def png_of(
+    width: int,
+    height: int,
+    depth: int,
+    colour_type: int,
+    lines: bytes,
+    palette: bytes = b"",
+    *,
+    interlaced: bool = False,
+) -> bytes:
+    """Return a PNG of packed lines, each with its filter before it; there may be too few."""
+    header = struct.pack(">IIBBBBB", width, height, depth, colour_type, 0, 0, interlaced)
+    colours = [(b"PLTE", palette)] if palette else []
+    rows = (b"IDAT", zlib.compress(lines))
+    return write_png([(b"IHDR", header), *colours, rows, (b"IEND", b"")])
+
+
 def read_png(data: bytes) -> list[Chunk]:
     """Take a PNG apart, also one that is cut short."""
     chunks, at = [], len(PNG)

@@ -10,9 +10,11 @@ import ezdxf
 import numpy as np
 from ezdxf import units
 
+from fuzz import forms
 from fuzz.pictures import HEIGHT, STONES, WIDTH, label_image, pngs
 
 Point = tuple[float, float]
+SIZE = WIDTH, HEIGHT
 
 
 def _json(*contents: Any) -> Sequence[bytes]:
@@ -21,24 +23,18 @@ def _json(*contents: Any) -> Sequence[bytes]:
 
 def labelme() -> Sequence[bytes]:
     """Return shapes of all kinds, a mask among them."""
-    shapes: list[dict[str, Any]] = [
-        {"label": f"stone {stone}", "points": outline, "group_id": None, "shape_type": "polygon"}
-        for stone, outline in STONES.items()
-    ]
+    drawn = forms.labelme(((f"stone {i}", outline) for i, outline in STONES.items()), SIZE)
     mask = {
         "label": "3", "points": [[0, 0], [WIDTH - 1, HEIGHT - 1]], "shape_type": "mask",
         "mask": base64.b64encode(pngs()[5]).decode(),
     }  # fmt: skip
     circle = {"label": "a", "points": [[9, 9], [9, 14]], "shape_type": "circle", "group_id": 1}
     box = {"label": "a", "points": [[20, 20], [30, 30]], "shape_type": "rectangle", "group_id": 1}
-    whole = {
-        "version": "5.8.1", "imagePath": "photo.jpg", "imageData": None, "imageHeight": HEIGHT,
-        "imageWidth": WIDTH,
-    }  # fmt: skip
+    drawn |= {"version": "5.8.1", "imagePath": "photo.jpg", "imageData": None}
     page = {"px_per_m": 200.0, "ground": [[0, HEIGHT], [WIDTH, HEIGHT - 2.5]], "not_used": [2]}
     return _json(
-        {"shapes": shapes, **whole, "drystone": page},
-        {"shapes": [mask, circle, box, shapes[0]], **whole},
+        {**drawn, "drystone": page},
+        {**drawn, "shapes": [mask, circle, box, drawn["shapes"][0]]},
     )
 
 
@@ -115,53 +111,36 @@ def geojson() -> Sequence[bytes]:
 
 def exports() -> Sequence[bytes]:
     """Return what Label Studio, VIA and QuPath export, and an instance of a nesting program."""
-    size = {"original_width": WIDTH, "original_height": HEIGHT}
-    results: list[dict[str, Any]] = []
-    regions, items, features = [], [], []
-    for stone, outline in STONES.items():
-        shares = [[100.0 * x / WIDTH, 100.0 * y / HEIGHT] for x, y in outline]
-        value = {"points": shares, "polygonlabels": ["stone"]}
-        results.append({"id": f"r{stone}", "type": "polygonlabels", "value": value} | size)
-        xs, ys = zip(*outline, strict=True)
-        shape = {"name": "polygon", "all_points_x": xs, "all_points_y": ys}
-        regions.append({"shape_attributes": shape, "region_attributes": {"class": "stone"}})
-        piece = {"type": "simple_polygon", "data": outline}
-        items.append({"id": stone, "demand": 1, "shape": piece})
-        ring = {"type": "Polygon", "coordinates": [[*outline, outline[0]]]}
-        said = {"classification": {"name": "Stone"}}
-        features.append({"type": "Feature", "geometry": ring, "properties": said})
+    shapes = [("stone", outline) for outline in STONES.values()]
+    tasks, images = forms.label_studio(shapes, SIZE), forms.via_alone(shapes)
+    results, regions = tasks[0]["annotations"][0]["result"], images["a.jpg9"]["regions"]
     turned = {"x": 5, "y": 5, "width": 20, "height": 9, "rotation": 30, "rectanglelabels": ["bar"]}
-    results.append({"type": "rectanglelabels", "value": turned} | size)
+    results.append({**results[0], "id": "r", "type": "rectanglelabels", "value": turned})
     circle = {"name": "circle", "cx": 9, "cy": 9, "r": 5}
     regions.append({"shape_attributes": circle, "region_attributes": {}})
-    hole = {"outer": items[0]["shape"]["data"], "inner": []}
+    items: list[dict[str, Any]] = [
+        {"id": stone, "demand": 1, "shape": {"type": "simple_polygon", "data": outline}}
+        for stone, outline in STONES.items()
+    ]
+    hole = {"outer": STONES[7], "inner": []}
     items.append({"id": 0, "demand": 2, "shape": {"type": "polygon", "data": hole}})
-    return _json(
-        [{"id": 1, "data": {"image": "a.jpg"}, "annotations": [{"result": results}]}],
-        {"a.jpg1": {"filename": "a.jpg", "regions": regions}},
-        {"name": "a", "items": items},
-        features,
-    )
+    features = forms.qupath_list(shapes, lambda label: {"name": label})
+    return _json(tasks, images, {"name": "a", "items": items}, features)
 
 
 def cvat() -> Sequence[bytes]:
     """Return an image with shapes of all kinds."""
-    drawn = "".join(
-        f'<polygon label="stone" points="{";".join(f"{x},{y}" for x, y in outline)}"/>'
-        for outline in STONES.values()
-    )
-    drawn += '<box label="bar" xtl="1" ytl="1" xbr="9" ybr="5" rotation="10"/>'
-    drawn += '<ellipse label="a" cx="30" cy="9" rx="8" ry="4"/>'
-    drawn += '<mask label="a" rle="2, 4, 2, 4" left="50" top="9" width="4" height="3"/>'
-    image = f'<image id="0" name="a.jpg" width="{WIDTH}" height="{HEIGHT}">{drawn}</image>'
-    return [f"<annotations>{image}</annotations>".encode()]
+    shapes = [("stone", outline) for outline in STONES.values()]
+    more = '<box label="bar" xtl="1" ytl="1" xbr="9" ybr="5" rotation="10"/>'
+    more += '<ellipse label="a" cx="30" cy="9" rx="8" ry="4"/>'
+    more += '<mask label="a" rle="2, 4, 2, 4" left="50" top="9" width="4" height="3"/>'
+    return [forms.cvat(shapes, SIZE, more).encode()]
 
 
 def yolo() -> Sequence[bytes]:
     """Return segments, which are refused for want of a picture, and such as are px."""
-    lines = [" ".join(map(str, np.ravel(outline))) for outline in STONES.values()]
-    shares = [" ".join(map(str, np.ravel(outline) / 99.0)) for outline in STONES.values()]
-    return ["\n".join(f"0 {line}" for line in one).encode() for one in (lines, shares)]
+    shapes = [("stone", outline) for outline in STONES.values()]
+    return [forms.yolo(shapes, size).encode() for size in ((1, 1), SIZE)]
 
 
 def dxf() -> Sequence[bytes]:
@@ -304,13 +283,19 @@ def stl() -> Sequence[bytes]:
     """Return a mesh as text and in bytes."""
     corners, faces = _whole()
     triangles = corners[faces]
-    rows = np.zeros(len(faces), [("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("a", "<u2")])
-    rows["corners"] = triangles
     facets = "".join(
         "facet normal 0 0 0\nouter loop\n"
         + "".join(f"vertex {x} {y} {z}\n" for x, y, z in triangle)
         + "endloop\nendfacet\n"
         for triangle in triangles.tolist()
     )
-    binary = b"drystone, mm".ljust(80, b"\0") + len(faces).to_bytes(4, "little") + rows.tobytes()
-    return [f"solid a\n{facets}endsolid a\n".encode(), binary]
+    return [f"solid a\n{facets}endsolid a\n".encode(), binary_stl(triangles, b"drystone, mm")]
+
+
+def binary_stl(triangles: np.ndarray, title: bytes = b"") -> bytes:
+    """Return triangles, (n, 3, 3), in bytes."""
+    rows = np.zeros(
+        len(triangles), [("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("a", "<u2")]
+    )
+    rows["corners"] = triangles
+    return title.ljust(80, b"\0") + len(triangles).to_bytes(4, "little") + rows.tobytes()

@@ -2,8 +2,6 @@
 
 import io
 import json
-import struct
-import zlib
 from collections.abc import Sequence
 from typing import Any
 
@@ -12,7 +10,7 @@ import tifffile
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
-from fuzz.containers import write_png
+from fuzz.containers import png_of
 from fuzz.mutate import Case
 from fuzz.tiffs import DEFLATE, LZW, write_tiff
 
@@ -83,16 +81,9 @@ def png(values: Array, depth: int, kind: int, *, interlaced: bool = False) -> by
         part = part[..., 8 - min(depth, 8) :]
         packed = np.packbits(part.reshape(len(part), -1), axis=1)
         rows += b"".join(b"\0" + line.tobytes() for line in packed)
-    size = values.shape[1] // samples, values.shape[0]
-    palette = [(b"PLTE", bytes(range(3 * 2**depth)))] if kind == 3 else []
-    return write_png(
-        [
-            (b"IHDR", struct.pack(">IIBBBBB", *size, depth, kind, 0, 0, interlaced)),
-            *palette,
-            (b"IDAT", zlib.compress(rows)),
-            (b"IEND", b""),
-        ]
-    )
+    height, width = values.shape
+    palette = bytes(range(3 * 2**depth)) if kind == 3 else b""
+    return png_of(width // samples, height, depth, kind, rows, palette, interlaced=interlaced)
 
 
 def pillow(values: Array | Image.Image, kind: str, **options: Any) -> bytes:

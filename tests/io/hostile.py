@@ -12,12 +12,14 @@ import zlib
 
 import ezdxf
 import numpy as np
+from fuzz.containers import png_of
+from fuzz.drawings import binary_stl
 from fuzz.pictures import npy, pillow
 from fuzz.tiffs import write_tiff
 
 from drystone.io.read_settings import ReadSettings
 from tests.io import test_annotations
-from tests.io.pictures import png_of, two_stones
+from tests.io.pictures import two_stones
 from tests.io.test_dxf import text_of
 
 EPS = b"%!PS-Adobe-3.0 EPSF-3.0\n%%BoundingBox: 0 0 60 36\n%%EndComments\n(x) print\n%%EOF\n"
@@ -133,12 +135,6 @@ def high_degree(document):
     document.modelspace().add_open_spline(points, degree=89)
 
 
-def stl(corners):
-    facets = np.zeros(len(corners), [("n", "<f4", 3), ("c", "<f4", (3, 3)), ("a", "<u2")])
-    facets["c"] = corners
-    return bytes(80) + struct.pack("<I", len(corners)) + facets.tobytes()
-
-
 RANDOM = np.random.default_rng(0).random
 CROSSING = [(float(x), float(y)) for x, y in RANDOM((600, 2))]
 CORNERS = "\n".join(f"v {x} {y} 0" for x, y in CROSSING)
@@ -193,7 +189,7 @@ FILES = {
     "rows.dxf": (lambda: dxf(in_rows), "E114 .*too often"),
     "nested.dxf": (lambda: dxf(nested), "E114 .*in each other too often"),
     "degree.dxf": (lambda: dxf(high_degree), "E114 .*degree is 89"),
-    "pile.stl": (lambda: stl(RANDOM((900, 3, 3))), "E110 .*over each other"),
+    "pile.stl": (lambda: binary_stl(RANDOM((900, 3, 3))), "E110 .*over each other"),
     # a memory that is filled
     "large.json": (lambda: coco(runs(2400), side=2400), ""),
     "largest.json": (lambda: coco(runs(46_340)), "E110 .*46340 x 46340"),
@@ -209,7 +205,7 @@ FILES = {
     "bomb.json": (lambda: labelme(png_of(20_000, 20_000, 1, 0, bytes(9))), "E110 .*20000 x 20000"),
     "far.dxf": (lambda: dxf(far_away), "E110 .*reaches over .*far away"),
     "far.stl": (
-        lambda: stl(np.array([*SLATES, [[0, 0, 2], [90, 0, 2], [0, 0, 99]]])),
+        lambda: binary_stl(np.array([*SLATES, [[0, 0, 2], [90, 0, 2], [0, 0, 99]]])),
         "E110 .*far away",
     ),
     "curves.svg": (lambda: svg(f'<path d="M1 1t{"1 1 " * 10_000}z"/>'), "E114 .*corners"),

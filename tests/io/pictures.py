@@ -1,11 +1,8 @@
 """Small pictures that the tests of the readers share."""
 
 import json
-import struct
-import zlib
 
 import numpy as np
-from fuzz.containers import write_png
 from PIL import Image
 
 
@@ -56,11 +53,3 @@ def written(folder, content, name="stones.json"):
 
 def save_mask(path, mask):
     Image.fromarray(np.asarray(mask, np.uint8) * np.uint8(255)).save(path)
-
-
-def png_of(width, height, depth, colour_type, lines, palette=b""):
-    """A PNG of packed lines, each with its filter before it; there may be fewer than it says."""
-    header = struct.pack(">IIBBBBB", width, height, depth, colour_type, 0, 0, 0)
-    colours = [(b"PLTE", palette)] if palette else []
-    rows = (b"IDAT", zlib.compress(lines))
-    return write_png([(b"IHDR", header), *colours, rows, (b"IEND", b"")])

@@ -290,12 +290,10 @@ def test_numbers_are_kept_or_it_is_said_that_they_are_not(tmp_path, form, given,
     assert told == ([] if said is None else [said])
 
 
-@pytest.mark.parametrize("form", ["labelme", "coco", "sam", "qupath", "svg", "npz"])
+@pytest.mark.parametrize("form", ["coco", "svg", "npz"])
 def test_outlines_say_themselves_what_is_stone(tmp_path, form):
     if form == "npz":
         np.savez(path := tmp_path / "masks.npz", a=np.eye(20) > 0, b=np.tri(20) > 0)
-    elif form == "sam":
-        path = written(tmp_path, [{"segmentation": [[1, 1, 30, 1, 30, 30]]}])
     else:
         path = labelled.written(tmp_path, form, [("stone", ring) for ring in labelled.stones()])
     for option, value in (("background", 255), ("mask", True), ("no-mask", False)):

@@ -11,7 +11,7 @@ from PIL import Image
 from drystone.errors import InputError, UsageError
 from drystone.io.read_stones import ReadSettings, read_stones
 from tests.io.known_stones import masks
-from tests.io.labelled import HEIGHT, SIZE, WIDTH, box, stones, written
+from tests.io.labelled import HEIGHT, WIDTH, box, stones, written
 from tests.io.pictures import written as file_of
 from tests.io.test_annotations import coco, geojson, labelme, runs
 
@@ -20,6 +20,7 @@ def read(tmp_path, content, name="stones.json", **settings):
     return read_stones(file_of(tmp_path, content, name), settings=ReadSettings(**settings))
 
 
+SIZE = {"original_width": WIDTH, "original_height": HEIGHT}
 PER_CENT = {"x": 25.0, "y": 25.0}  # 90, 65
 
 

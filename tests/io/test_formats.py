@@ -7,6 +7,7 @@ from itertools import product
 
 import numpy as np
 import pytest
+from fuzz.containers import png_of
 from fuzz.pictures import colours, npy, pillow, png, tiff
 from PIL import Image, ImageOps
 from scipy import ndimage
@@ -16,7 +17,7 @@ from drystone.io.images import decode
 from drystone.io.read_stones import ReadSettings, read_stones
 from drystone.io.wall_image import read_wall_image
 from drystone.io.walls import read_wall
-from tests.io.pictures import areas, codes, png_of, two_stones
+from tests.io.pictures import areas, codes, two_stones
 
 LIMIT = 10**6
 
@@ -59,16 +60,12 @@ def written(folder, data):
     return folder / "a.any"
 
 
-@pytest.mark.parametrize("alpha", [None, 255, 0])
-def test_colours_are_ids_and_alpha_is_ignored(tmp_path, alpha):
-    values = colours(two_stones())
-    if alpha is not None:
-        values = with_last(values, np.full((40, 60), alpha, np.uint8))
-    stones = read_stones(written(tmp_path, pillow(values, "PNG")))
+def test_colours_are_ids(tmp_path):
+    stones = read_stones(written(tmp_path, pillow(colours(two_stones()), "PNG")))
     assert areas(stones) == {300: 375, 70000: 600}
-    assert codes(stones) == (["W174", "W115"] if alpha == 0 else ["W115"])
-    assert "3 colours" in stones.notices[-1].message
-    assert "2 stones" in stones.notices[-1].message
+    (notice,) = stones.notices
+    assert notice.code == "W115"
+    assert "3 colours read as ids R + 256 G + 65536 B: 2 stones." in notice.message
 
 
 @pytest.mark.parametrize(

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import shapely
+from fuzz.forms import labelme
 from PIL import Image
 from shapely import affinity
 
@@ -23,7 +24,6 @@ from drystone.io.photo_beside import (
 )
 from drystone.io.read_stones import ReadSettings, read_stones
 from drystone.io.walls import read_wall
-from tests.io.labelled import labelme
 from tests.io.pictures import areas, said, two_stones, written
 
 
