@@ -38,16 +38,6 @@ def labelme() -> Sequence[bytes]:
     )
 
 
-def _runs(stone: int) -> dict[str, Any]:
-    """Return the pixels of a stone as run lengths, column by column."""
-    flat = (label_image() == stone).ravel(order="F")
-    ends = np.flatnonzero(np.diff(flat)) + 1
-    return {
-        "size": [HEIGHT, WIDTH],
-        "counts": np.diff([0, *ends.tolist(), flat.size]).tolist(),
-    }
-
-
 def _packed(runs: dict[str, Any]) -> dict[str, Any]:
     """Return run lengths as COCO packs them into text: differences in groups of five bits."""
     counts, text = runs["counts"], ""
@@ -62,26 +52,16 @@ def _packed(runs: dict[str, Any]) -> dict[str, Any]:
 
 def coco() -> Sequence[bytes]:
     """Return annotations with polygons and with run lengths of both kinds."""
-
-    def whole(shapes: dict[int, Any], **more: Any) -> dict[str, Any]:
-        return {
-            "images": [{"id": 7, "file_name": "a/photo.jpg", "width": WIDTH, "height": HEIGHT}],
-            "categories": [{"id": 1, "name": "stone"}, {"id": 2, "name": "wedge"}],
-            "annotations": [
-                {"id": i, "image_id": 7, "category_id": 1, "iscrowd": 0, "segmentation": s, **more}
-                for i, s in shapes.items()
-            ],
-        }
-
     flat = {stone: [np.ravel(outline).tolist()] for stone, outline in STONES.items()}
-    runs = {stone: _runs(stone) for stone in STONES}
+    runs = {stone: forms.runs_of(label_image() == stone) for stone in STONES}
     packed = {stone: _packed(found) for stone, found in runs.items()}
-    return _json(whole(flat), whole(runs), whole(packed), whole(packed, predicted_iou=0.9))
+    files = [forms.coco_of(shapes, SIZE) for shapes in (flat, runs, packed)]
+    return _json(*files, forms.coco_of(packed, SIZE, predicted_iou=0.9))
 
 
 def sam() -> Sequence[bytes]:
     """Return lists of masks as run lengths of both kinds, rows of truth values, and polygons."""
-    runs = [_runs(stone) for stone in STONES]
+    runs = [forms.runs_of(label_image() == stone) for stone in STONES]
     shapes = [*map(_packed, runs), [np.ravel(STONES[9]).tolist()]]
     rows = [(label_image()[::3, ::3] == stone).astype(int).tolist() for stone in STONES]
     return _json(

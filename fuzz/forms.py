@@ -1,9 +1,10 @@
 """Outlines with classes in the forms of labelling tools: of one picture, px, y down."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 Shapes = Iterable[tuple[str, Sequence[Sequence[float]]]]
 """Class and corners of each."""
@@ -26,6 +27,25 @@ def coco(shapes: Shapes, size: Size = SIZE) -> dict[str, Any]:
         "categories": [{"id": i, "name": name} for i, name in enumerate(names)],
         "annotations": found,
     }
+
+
+def coco_of(segmentations: Mapping[int, Any], size: Size, **more: Any) -> dict[str, Any]:
+    """Return annotations of one class by their ids, in any form of COCO; `more` is of each."""
+    return {
+        "images": [{"id": 7, "file_name": "a/photo.jpg", "width": size[0], "height": size[1]}],
+        "categories": [{"id": 1, "name": "stone"}],
+        "annotations": [
+            {"id": i, "image_id": 7, "category_id": 1, "iscrowd": 0, "segmentation": s, **more}
+            for i, s in segmentations.items()
+        ],
+    }
+
+
+def runs_of(mask: NDArray[np.bool_]) -> dict[str, Any]:
+    """Return the pixels of a mask as run lengths, column by column."""
+    flat = mask.ravel(order="F").astype(int)
+    ends = np.flatnonzero(np.diff(flat, prepend=0)).tolist()
+    return {"size": list(mask.shape), "counts": np.diff([0, *ends, flat.size]).tolist()}
 
 
 def labelme(shapes: Shapes, size: Size = SIZE) -> dict[str, Any]:

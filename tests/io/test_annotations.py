@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from fuzz.forms import coco_of, runs_of
 from fuzz.pictures import pillow
 from hypothesis import given
 from hypothesis import strategies as st
@@ -42,23 +43,14 @@ def labelme(**changes):
 
 def runs(mask, *, packed=True):
     """Run lengths by pycocotools, or by a plain count of changes."""
-    if packed:
-        found = coco_mask.encode(np.asfortranarray(mask.astype(np.uint8)))
-        return {"size": found["size"], "counts": found["counts"].decode()}
-    flat = mask.ravel(order="F").astype(int)
-    ends = np.flatnonzero(np.diff(flat, prepend=0)).tolist()
-    return {"size": list(mask.shape), "counts": np.diff([0, *ends, mask.size]).tolist()}
+    if not packed:
+        return runs_of(mask)
+    found = coco_mask.encode(np.asfortranarray(mask.astype(np.uint8)))
+    return {"size": found["size"], "counts": found["counts"].decode()}
 
 
-def coco(segmentation_of, **changes):
-    return {
-        "images": [{"id": 7, "file_name": "a/photo.jpg", "width": WIDTH, "height": HEIGHT}],
-        "categories": [{"id": 1, "name": "stone"}],
-        "annotations": [
-            {"id": i, "image_id": 7, "category_id": 1, "iscrowd": 0, "segmentation": s}
-            for i, s in segmentation_of.items()
-        ],
-    } | changes
+def coco(segmentations, **changes):
+    return coco_of(segmentations, (WIDTH, HEIGHT)) | changes
 
 
 def flat_polygons():
