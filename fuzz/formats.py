@@ -19,13 +19,14 @@ from fuzz.driver import Format
 from fuzz.mutate import Case
 
 _READINGS = (
-    *(ReadSettings(), ReadSettings(pieces="keep-largest", holes="keep"), ReadSettings(unit="mm")),
-    *(
-        ReadSettings(pieces="split"),
-        ReadSettings(mask=True),
-        ReadSettings(px_per_m=300.0, max_image_mpx=30.0),
-    ),
-    *(ReadSettings(max_image_mpx=0.01), ReadSettings(background=7, skip=(9,))),
+    ReadSettings(),
+    ReadSettings(pieces="keep-largest", holes="keep"),
+    ReadSettings(unit="mm"),
+    ReadSettings(pieces="split"),
+    ReadSettings(mask=True),
+    ReadSettings(px_per_m=300.0, max_image_mpx=30.0),
+    ReadSettings(max_image_mpx=0.01),
+    ReadSettings(background=7, skip=(9,)),
 )
 _OF_LABELS = (
     ReadSettings(keep=(1, 3)),

@@ -56,8 +56,6 @@ def pngs() -> Sequence[bytes]:
     bits = [(depth, kind) for depth in (1, 2, 4) for kind in (0, 3)]
     clear = Image.fromarray(grey).convert("P")
     frames = [Image.fromarray(grey), Image.fromarray(grey[::-1].copy())]
-    turned = Image.Exif()
-    turned[274] = 6
     return [
         *(pillow(values, "PNG") for values in (grey, large, colours(label_image("u4", times=300)))),
         *(pillow(colours(label_image("u4"), 4)[..., :n], "PNG") for n in (2, 4)),
@@ -65,7 +63,7 @@ def pngs() -> Sequence[bytes]:
         png(grey, 8, 0, interlaced=True),
         png(np.repeat(grey, 6, axis=1), 16, 2),  # refused: ids would merge
         pillow(clear, "PNG", transparency=0),
-        pillow(np.dstack([grey, np.where(grey == 9, 0, 255).astype("u1")]), "PNG", exif=turned),
+        pillow(np.dstack([grey, np.where(grey == 9, 0, 255).astype("u1")]), "PNG", exif=held()),
         pillow(np.dstack([grey * 0] * 3 + [grey * 20]), "PNG"),  # the mask is the alpha
         pillow(frames[0], "PNG", save_all=True, append_images=frames[1:]),
     ]
@@ -151,7 +149,7 @@ def bmps() -> Sequence[bytes]:
 
 def jpegs() -> Sequence[bytes]:
     """Return JPEG of masks, with more parts than they need."""
-    mask, exif = Image.fromarray((label_image() > 0).astype(np.uint8) * 255), _turned()
+    mask, exif = Image.fromarray((label_image() > 0).astype(np.uint8) * 255), held()
     return [
         pillow(mask, "JPEG", quality=95), pillow(mask, "JPEG", progressive=True, exif=exif),
         pillow(mask.convert("RGB"), "JPEG", comment=b"a", dpi=(9, 9)),
@@ -159,10 +157,10 @@ def jpegs() -> Sequence[bytes]:
     ]  # fmt: skip
 
 
-def _turned() -> Image.Exif:
-    """Return the tag of a camera that was held sideways."""
+def held(orientation: int = 6) -> Image.Exif:
+    """Return the tag that says how a camera was held: sideways, where nothing else is said."""
     exif = Image.Exif()
-    exif[274] = 6
+    exif[274] = orientation
     return exif
 
 
@@ -219,7 +217,7 @@ def photos() -> Sequence[bytes]:
     grey = light.astype(np.uint8)
     rgb = np.stack([grey, grey, grey // 2], axis=-1)
     picture = Image.fromarray(rgb)
-    exif = _turned()
+    exif = held()
     return [
         pillow(rgb, "JPEG", quality=90), pillow(rgb, "JPEG", exif=exif, progressive=True),
         pillow(picture.convert("CMYK"), "JPEG"), pillow(grey, "JPEG"), pillow(rgb, "PNG"),

@@ -5,7 +5,7 @@ import sys
 
 import numpy as np
 import pytest
-from fuzz.pictures import pillow
+from fuzz.pictures import held, pillow
 from PIL import Image
 
 from drystone.errors import InputError, UsageError
@@ -120,9 +120,8 @@ def test_shapes_of_cvat(tmp_path):
 @pytest.mark.parametrize("turned", [False, True])
 def test_segments_of_yolo_have_the_proportions_of_their_picture(tmp_path, turned):
     path = written(tmp_path, "yolo", [("stone", ring) for ring in stones()])
-    photo, exif = tmp_path / "photo.jpg", Image.Exif()
-    exif[0x0112] = 6 if turned else 1
-    Image.new("L", (HEIGHT, WIDTH) if turned else (WIDTH, HEIGHT)).save(photo, exif=exif)
+    photo, sides = tmp_path / "photo.jpg", (HEIGHT, WIDTH) if turned else (WIDTH, HEIGHT)
+    Image.new("L", sides).save(photo, exif=held(6 if turned else 1))
     path.write_text("0 .5 .5 .1 .1\n" + path.read_text())
     found = read_stones(path, settings=ReadSettings(image=str(photo)))
     assert (found.source.width_px, found.source.height_px) == (WIDTH, HEIGHT)

@@ -8,7 +8,7 @@ from itertools import product
 import numpy as np
 import pytest
 from fuzz.containers import png_of
-from fuzz.pictures import colours, npy, pillow, png, tiff
+from fuzz.pictures import colours, held, npy, pillow, png, tiff
 from PIL import Image, ImageOps
 from scipy import ndimage
 
@@ -186,10 +186,8 @@ def test_an_orientation_turns_a_label_image_in_any_compression(orientation, dtyp
 def test_an_orientation_turns_a_mask_with_its_alpha_in_other_formats(kind, orientation):
     mask = (two_stones() > 0).astype(np.uint8) * np.uint8(255)
     alpha = (two_stones() != 300) * np.uint8(255)
-    exif = Image.Exif()
-    exif[0x0112] = orientation
     values = mask if kind == "JPEG" else np.dstack([mask, alpha])
-    picture = decode(pillow(values, kind, exif=exif), LIMIT)
+    picture = decode(pillow(values, kind, exif=held(orientation)), LIMIT)
     np.testing.assert_array_equal(picture.values > 127, upright(mask, orientation) > 0)
     if kind == "PNG":
         np.testing.assert_array_equal(picture.alpha, upright(alpha, orientation))

@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 import pytest
 import tifffile
-from fuzz.pictures import pillow, tiff
+from fuzz.pictures import held, pillow, tiff
 from PIL import Image
 
 from drystone.errors import InputError
@@ -36,9 +36,7 @@ def test_values_are_kept(tmp_path):
 def test_photos_are_turned_as_opencv_does(tmp_path, ending, orientation):
     smooth = np.zeros((24, 32, 3), dtype=np.uint8)
     smooth[:12, :16], smooth[12:, :16] = (250, 20, 20), (20, 20, 250)
-    exif = Image.Exif()
-    exif[0x0112] = orientation
-    path = saved(tmp_path / f"photo.{ending}", smooth, exif=exif, quality=95)
+    path = saved(tmp_path / f"photo.{ending}", smooth, exif=held(orientation), quality=95)
     theirs = cv2.imread(str(path), cv2.IMREAD_COLOR_RGB)
     photo = read_photo(path)
     assert np.abs(photo.values.astype(int) - theirs).max() < 12

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from fuzz.pictures import pillow
+from fuzz.pictures import held, pillow
 from PIL import Image
 
 import drystone
@@ -184,9 +184,7 @@ def test_names_that_are_no_utf8_can_be_written_down(tmp_path):
     Image.fromarray(two_stones().astype(np.uint16)).save(path)
     assert read_stones(path).source.path == "m?r.png"
     photo = strange(tmp_path, b"m\xfcr.jpg")
-    exif = Image.Exif()
-    exif[0x0112] = 3
-    Image.fromarray(np.zeros((9, 9, 3), np.uint8)).save(photo, exif=exif)
+    Image.fromarray(np.zeros((9, 9, 3), np.uint8)).save(photo, exif=held(3))
     read = read_photo(photo)
     assert read.name == "m?r.jpg"
     assert "m?r.jpg was turned" in str(read.notices[0])
