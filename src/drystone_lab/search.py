@@ -127,18 +127,19 @@ def looked_at_times(
     for _ in first.steps():
         pass
     reached: list[tuple[WayState, float]] = []
+    before: tuple[WayState, float] | None = None
     for state in way(first, end, clock):
-        reached.append((state, clock()))
-        if reached[-1][1] > end:
+        now = state, clock()
+        while len(reached) < len(times) - 1 and now[1] > started + times[len(reached)]:
+            reached.append(before or now)
+        before = now
+        if now[1] > end:
             break
-    # By each of the earlier times, and after the last one
-    counting = [
-        next((one for one in reversed(reached) if one[1] <= started + seconds), reached[0])
-        for seconds in times[:-1]
-    ] + reached[-1:]
+    assert before is not None  # noqa: S101 - the first wall is there
+    reached += [before] * (len(times) - len(reached))
     # Packed walls are built again only now, in nobody's time.
     possible = possible_filling(first.workshop)
-    return [WayResult(state.best(), state.walls, possible, at - started) for state, at in counting]
+    return [WayResult(state.best(), state.walls, possible, at - started) for state, at in reached]
 
 
 FIGURES = (

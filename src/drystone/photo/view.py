@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -55,14 +55,19 @@ MAX_STRETCH = 10.0
 """How many times coarser the farthest px of a photograph may be than the nearest."""
 
 
-def rectify(
-    image: NDArray[np.uint8], view: View, max_px: int
-) -> tuple[NDArray[np.uint8], float, NDArray[np.bool_], NDArray[np.float64]]:
+class Rectified(NamedTuple):
+    """A picture of the ground as a camera far above would take it."""
+
+    picture: NDArray[np.uint8]  # (h, w, 3): black where the photograph shows nothing
+    px_per_m: float
+    inside: NDArray[np.bool_]  # (h, w): where the photograph shows something
+    from_photo: NDArray[np.float64]  # (3, 3): homography from photo px to px of the picture
+
+
+def rectify(image: NDArray[np.uint8], view: View, max_px: int) -> Rectified:
     """Turn a photograph into the picture that a camera far above would take; it shows all of it.
 
-    It is as fine as the view says, or less where `max_px` would be exceeded.  Returns the picture,
-    (h, w, 3), black where the photograph shows nothing; its px in a metre; (h, w) where it shows
-    something; and the homography, (3, 3), from photo px to px of the picture.
+    It is as fine as the view says, or less where `max_px` would be exceeded.
     """
     height, width = image.shape[:2]
     corners = apply(view.photo_to_ground, SQUARE * (width, height))
@@ -86,7 +91,7 @@ def rectify(
     values = cv2.warpPerspective(image, by, size, flags=cv2.INTER_LINEAR, borderMode=beyond)
     inside = np.asarray(cv2.warpPerspective(shown, by, size, flags=cv2.INTER_NEAREST)) > 0
     values[~inside] = 0
-    return np.asarray(values, dtype=np.uint8), scale, inside, from_photo
+    return Rectified(np.asarray(values, dtype=np.uint8), scale, inside, from_photo)
 
 
 def without_bands(image: NDArray[np.uint8]) -> NDArray[np.bool_]:
