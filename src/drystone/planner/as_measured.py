@@ -33,7 +33,6 @@ from drystone.settle.rest import (
     settled_at,
 )
 from drystone.settle.wedge import wedged
-from drystone.stabilise.stabilise import WedgeStock, stabilise
 
 FAR = 0.1
 """A stone that is moved so far, over its size, from where it was measured is named (W127)."""
@@ -209,10 +208,13 @@ def _put(
     Of the places where it rests, by itself or on a wedge, the nearest is taken after which the
     wall stands; if there is none, the nearest at which it overlaps nothing.
     """
-    options = _on_pixels if build.wall.outlines is None else _on_outlines
+    if build.wall.outlines is None:
+        options = _on_pixels(build, one, workshop)
+    else:
+        options = _on_outlines(build, one, workshop, settings)
     evaluator = Evaluator(settings, workshop.stock)
     fallback: Candidate | None = None
-    for found in islice(options(build, one, workshop, settings), JUDGED):
+    for found in islice(options, JUDGED):
         candidate = judged(build, found, course_heights_px, evaluator)
         if candidate.stands:
             return candidate
@@ -295,12 +297,9 @@ def _starts(
     return list(dict.fromkeys(inside))
 
 
-def _on_pixels(
-    build: Build, one: Measured, workshop: Workshop, settings: PlannerSettings
-) -> Iterator[Group]:
+def _on_pixels(build: Build, one: Measured, workshop: Workshop) -> Iterator[Group]:
     """List places of a stone that is pixels, the nearest first."""
-    book, occupied = workshop.book, build.wall.occupied
-    stock = WedgeStock(workshop.next_wedge(build), workshop.stock.mean_height_px)
+    book, occupied, number = workshop.book, build.wall.occupied, workshop.next_wedge(build)
     poses = [book.pose(one.stone, one.place.angle_deg)]
     if one.planned is not None:
         angle = one.planned.placement.posed.angle_deg
@@ -310,7 +309,7 @@ def _on_pixels(
     found = []
     for _, posed, row, col in sorted(spots, key=itemgetter(0)):
         trial = posed, row, col
-        there = stabilise(occupied, trial, one.side, book, stock, settings.stabilise)
+        there = workshop.memory.stabilise(occupied, trial, one.side, number)
         if there is not None:
             found.append((one.placed_px(there.placement, build), there))
     allowed = max(one.reach_px, (ROOM + 2) / build.wall.site.scale)

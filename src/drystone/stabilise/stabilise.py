@@ -155,26 +155,6 @@ class Outcome:
     depth: int
 
 
-def stabilise(
-    occupied: Mask,
-    trial: Pose,
-    side: Side,
-    book: PoseBook,
-    wedges: WedgeStock,
-    settings: StabiliseSettings,
-) -> Group | None:
-    """Return a stable placement from a trial one; None when it cannot be made stable (§3.7).
-
-    `occupied` is the landscape without the stone.
-    """
-    falls = falls_to(occupied, trial, settings)
-    if falls is None:
-        return None
-    if falls == 0:
-        return Group(Placement(*trial, side))
-    return make_stable(occupied, trial, side, book, wedges, settings).stabilised
-
-
 def falls_to(occupied: Mask, trial: Pose, settings: StabiliseSettings) -> int | None:
     """Say to which side a stone falls: -1 left, +1 right, 0 stable; None when nothing supports."""
     support = support_polyline(occupied, *trial)
@@ -189,7 +169,7 @@ def make_stable(
     wedges: WedgeStock,
     settings: StabiliseSettings,
 ) -> Outcome:
-    """Turn a stone that falls, or wedge it; arguments as for :func:`stabilise`."""
+    """Turn a stone that falls, or wedge it (§3.7); `occupied` is the landscape without it."""
     posed, row, col = trial
     depth = row + posed.height_px + 1
     if settings.method in ("both", "rotation"):
