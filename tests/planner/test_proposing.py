@@ -324,6 +324,10 @@ def bits(view):
     return [part.tobytes() for part in (*view.scene.polygons, *view.profile)]
 
 
+def seen(views, built, side):
+    return views.of(built, side, 0.58, SITE.width_px, 1.0 / SITE.scale)
+
+
 def at_once(built, side):
     scene = SettlingScene.of(built, SITE.extent_px[0], side, 0.58)
     profile = bare(SITE.width_px)
@@ -340,21 +344,21 @@ def at_once(built, side):
 def test_a_view_does_not_depend_on_what_was_asked_for_before(seed, asked):
     """Of two walls that differ from the third stone on."""
     one, other = heap(seed, 5), heap(seed + 1, 5)
-    found = Views(SITE)
+    found = Views(SITE.extent_px[0])
     for first, count, from_left in asked:
         polygons = one if first else [*one[:2], *other[2:]]
         built = no_polygons().added(polygons[:count])
         side = "left" if from_left else "right"
-        assert bits(found.of(built, side, 0.58)) == bits(at_once(built, side))
+        assert bits(seen(found, built, side)) == bits(at_once(built, side))
 
 
 def test_a_wall_that_differs_in_the_last_bit_of_a_corner_is_another_one():
     polygons = heap(5, 2)
-    found = Views(SITE)
-    found.of(no_polygons().added(polygons), "left", 0.58)
+    found = Views(SITE.extent_px[0])
+    seen(found, no_polygons().added(polygons), "left")
     moved = polygons[0].copy()
     moved[0, 0] = np.nextafter(moved[0, 0], 99.0)
     built = no_polygons().added([moved, polygons[1]])
-    assert bits(found.of(built, "left", 0.58)) == bits(at_once(built, "left"))
+    assert bits(seen(found, built, "left")) == bits(at_once(built, "left"))
     split = Polygons(built.corners, np.array([0, 4, 14], np.int32), built.boxes, built.edges)
-    assert found.of(split, "left", 0.58).scene.polygons.first.tolist() == [0, 4, 14]
+    assert seen(found, split, "left").scene.polygons.first.tolist() == [0, 4, 14]

@@ -16,7 +16,7 @@ from drystone.kernels.raster import wrap_deg
 from drystone.planner.evaluate import Evaluator, Loaded
 from drystone.planner.search_settings import LayingSettings
 from drystone.planner.seats import Seats
-from drystone.planner.views import SideView
+from drystone.planner.views import Views
 from drystone.planner.workshop import Workshop
 from drystone.search.courses import CoursePlan, PlannedStone
 from drystone.search.letting_go import Aim, Hand
@@ -274,7 +274,7 @@ class Drop:
         settings = scenes.greedy({"settle": {"margin": 0.2}})
         one = scenes.finish(Planner(scenes.rubble(seed), scenes.RUBBLE_SITE, settings=settings), 4)
         yard, outlines = Yard.of(one), one.build.wall.outlines
-        self.view = SideView.bare(100.0, side, 0.58, 1.0).grown(outlines.polygons)
+        self.view = Views(100.0).of(outlines.polygons, side, 0.58, 100, 1.0)
         stone = next(s for s in one.workshop.stones if s.id not in dict(outlines.blocks))
         outline = one.workshop.outlines.outline(stone)
         self.stone = Turned.of(outline, 0.0, side, stone.area_px**0.5)

@@ -77,8 +77,10 @@ class ExactProposer(Proposer):
     def view(self, side: Side) -> SideView:
         """Return what is built and how high it is, as it is seen from a side."""
         if side not in self._views:
-            built = self.build.wall.exact.polygons
-            self._views[side] = self.workshop.views.of(built, side, self.settings.mu)
+            built, site = self.build.wall.exact.polygons, self.build.wall.site
+            self._views[side] = self.workshop.views.of(
+                built, side, self.settings.mu, site.width_px, 1.0 / site.scale
+            )
         return self._views[side]
 
     @cached_property

@@ -1,12 +1,10 @@
 """What is built on outlines, as each side sees it: it grows with the wall (DESIGN 4.9)."""
 
-import math
 from dataclasses import dataclass, replace
 
 from drystone.kernels.polygons import Polygons, mirrored_polygon, no_polygons
 from drystone.kernels.profiles import HeightProfile, bare, raised
 from drystone.model.placement import Side
-from drystone.model.site import Site
 from drystone.settle.rest import SettlingScene
 
 
@@ -17,12 +15,6 @@ class SideView:
     scene: SettlingScene
     profile: HeightProfile
     column_px: float  # width of the profile's columns, source px
-
-    @classmethod
-    def bare(cls, width_px: float, side: Side, mu: float, column_px: float) -> "SideView":
-        """Look at the bare ground, with a column for the last piece of it."""
-        scene = SettlingScene(no_polygons(), width_px, side, mu)
-        return cls(scene, bare(math.ceil(width_px / column_px)), column_px)
 
     def grown(self, built: Polygons) -> "SideView":
         """Return the view of outlines, in the wall frame, that begin with those of this one."""
@@ -40,25 +32,28 @@ class SideView:
 
 
 class Views:
-    """The last view from each side, by working px; only what is new is added to it.
+    """The last views from each side of a wall; only what is new is added to them.
 
     A view depends on what is built alone, not on what was asked for before.
     """
 
-    def __init__(self, site: Site) -> None:
-        self._site = site
-        self._last: dict[tuple[Side, float], tuple[Polygons, SideView]] = {}
+    def __init__(self, width_px: float) -> None:
+        self._width_px = width_px
+        self._last: dict[tuple[Side, float, int, float], tuple[Polygons, SideView]] = {}
 
-    def of(self, built: Polygons, side: Side, mu: float) -> SideView:
-        """Return the view of outlines from a side."""
-        before, view = self._last.get((side, mu), (no_polygons(), None))
+    def of(
+        self, built: Polygons, side: Side, mu: float, columns: int, column_px: float
+    ) -> SideView:
+        """Return the view of outlines from a side, with so many columns of a width, source px."""
+        key = side, mu, columns, column_px
+        before, view = self._last.get(key, (no_polygons(), None))
         # Bit by bit the same, and more after it.
         first = built.leading(min(len(before), len(built)))
         if view is None or _bits(first) != _bits(before):
-            scene = SettlingScene(no_polygons(), self._site.extent_px[0], side, mu)
-            view = SideView(scene, bare(self._site.width_px), 1.0 / self._site.scale)
+            scene = SettlingScene(no_polygons(), self._width_px, side, mu)
+            view = SideView(scene, bare(columns), column_px)
         view = view.grown(built)
-        self._last[side, mu] = built, view
+        self._last[key] = built, view
         return view
 
 

@@ -56,7 +56,7 @@ class Workshop:
         mean_size = fmean(stone.area_px**0.5 for stone in usable)
         return cls(
             stones, site, book, clusters, settings.orientations, fitting, stock, memory, outlines,
-            PoseCosts(stock, frozenset(settings.pin)), Views(site),
+            PoseCosts(stock, frozenset(settings.pin)), Views(site.extent_px[0]),
             Seats(mean_size, settings.settle, settings.mu, settings.pin, len(usable)),
             wedge_limits(settings, stock, site),
         )  # fmt: skip

@@ -7,7 +7,7 @@ plan, keeps the course's width, and leaves a wall that stands.
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from operator import attrgetter
 
 from drystone.kernels.raster import wrap_deg
@@ -18,7 +18,6 @@ from drystone.model.stone import Stone
 from drystone.planner.build import Build, Candidate, Proposal, Solves
 from drystone.planner.evaluate import Evaluator, Loaded, trouble
 from drystone.planner.search_settings import LayingSettings
-from drystone.planner.views import SideView
 from drystone.search.courses import CoursePlan, PlannedStone
 from drystone.search.letting_go import Aim, Hand, Resting
 from drystone.search.yard import Yard
@@ -35,12 +34,10 @@ def lay(
     Return the states before the first course and after each, and the trouble with all places.
     """
     mason = Mason.of(yard, laying or yard.settings.laying)
-    states, solves = [build], Solves()
+    states = [build]
     for course in plan.courses:
-        after, trouble = mason.course(states[-1], course)
-        states.append(after)
-        solves += trouble
-    return states, solves
+        states.append(mason.course(states[-1], course))
+    return states, sum(mason.troubles, Solves())
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,32 +59,30 @@ class Mason:
     laying: LayingSettings
     hand: Hand
     evaluator: Evaluator
-    views: dict[Side, SideView]  # from both ends; brought up to date when they are looked at
+    troubles: list[Solves] = field(default_factory=list)  # with the places that were judged
 
     @classmethod
     def of(cls, yard: Yard, laying: LayingSettings) -> "Mason":
-        """Return one who looks at the bare ground."""
+        """Return one who lays by the settings of a yard."""
         workshop, settings = yard.workshop, yard.settings
         hand = Hand(laying, settings.settle, workshop.limits, settings.stabilise.method)
         evaluator = Evaluator(settings, workshop.stock, until=yard.until)
-        width_px, mu = workshop.site.extent_px[0], settings.mu
-        views = {side: SideView.bare(width_px, side, mu, laying.column_px) for side in SIDES}
-        return cls(yard, laying, hand, evaluator, views)
+        return cls(yard, laying, hand, evaluator)
 
-    def course(self, build: Build, course: Sequence[PlannedStone]) -> tuple[Build, Solves]:
-        """Lay the stones of a course in their order, on the same wall as before with more on it."""
+    def course(self, build: Build, course: Sequence[PlannedStone]) -> Build:
+        """Lay the stones of a course in their order."""
         width_px = self.yard.workshop.site.extent_px[0]
         # Of each side, as it sees them: the planned right end of the stone that was planned last,
         # and the right end of the one that was laid last.
         planned, reached = dict.fromkeys(SIDES, 0.0), dict.fromkeys(SIDES, 0.0)
-        solves, left_out = Solves(), []
+        left_out = []
         for stone in course:
             side = stone.side
             left, right = _seen_from(side, stone.left_px, stone.right_px, width_px)
             # As far from its neighbour as planned, but no further in than planned.
             aim = min(left, reached[side] + left - planned[side])
-            action, trouble = self._laid(build, stone, side, aim)
-            planned[side], solves = right, solves + trouble
+            action = self._laid(build, stone, side, aim)
+            planned[side] = right
             if action is None:
                 left_out.append(stone)
                 continue
@@ -97,26 +92,26 @@ class Mason:
         # What could not be laid is tried anywhere in its course, from its own side first.
         for stone in left_out:
             for side in sorted(SIDES, key=lambda side: side != stone.side):
-                action, trouble = self._laid(build, stone, side, None)
-                solves += trouble
+                action = self._laid(build, stone, side, None)
                 if action is not None:
                     build = build.add(action, keep=True)
                     break
-        return build, solves
+        return build
 
     def _laid(
         self, build: Build, planned: PlannedStone, side: Side, left: float | None
-    ) -> tuple[Candidate | None, Solves]:
+    ) -> Candidate | None:
         """Choose how a stone is laid, with its left end near a place of the view or anywhere.
 
-        None where it is in the wall already or cannot be laid; says what trouble there was, too.
+        None where it is in the wall already or cannot be laid.
         """
-        workshop = self.yard.workshop
-        surest, solves = None, Solves()
+        workshop, surest = self.yard.workshop, None
         if planned.stone_id not in workshop.remaining(build):
-            return surest, solves
-        site = workshop.site
-        view = self.views[side] = self.views[side].grown(build.wall.exact.polygons)
+            return None
+        site, column_px = workshop.site, self.laying.column_px
+        columns = math.ceil(site.extent_px[0] / column_px)  # with one for the last piece
+        polygons, mu = build.wall.exact.polygons, self.yard.settings.mu
+        view = workshop.views.of(polygons, side, mu, columns, column_px)
         unit_px = workshop.stock.mean_height_px / site.scale
         highest_px = site.extent_px[1] + self.yard.settings.settle.beyond_px
         stone, least = workshop.stones.by_id(planned.stone_id), math.inf
@@ -125,16 +120,16 @@ class Mason:
             turned = workshop.outlines.hung(stone, angle_deg, side).turned
             aim = Aim(left, planned.top_px, angle_deg, highest_px, unit_px)
             resting = self.hand.resting(turned, view, aim, self.hand.starts(turned, view, aim))
-            least, action, trouble = self._surest(build, stone, angle_deg, side, resting, least)
-            surest, solves = action or surest, solves + trouble
+            least, action = self._surest(build, stone, angle_deg, side, resting, least)
+            surest = action or surest
             if not least:
                 break
-        return surest, solves
+        return surest
 
     def _surest(
         self, build: Build, stone: Stone, angle_deg: float, side: Side,
         resting: Sequence[Resting], least: float,
-    ) -> tuple[float, Candidate | None, Solves]:  # fmt: skip
+    ) -> tuple[float, Candidate | None]:  # fmt: skip
         """Compare the cheapest places after which the wall stands.
 
         Return one of them, and in which share of the trials something falls there: the best where
@@ -142,17 +137,16 @@ class Mason:
         """
         surest: tuple[float, Candidate | None] = least, None
         places, seats = list(enumerate(resting[: self.laying.judged])), self.yard.workshop.seats
-        solves = Solves()
         while places:
             rated = self._rated(build, stone, places)
             places = places[len(rated) :]
-            solves += sum((trouble(one.loaded) for one in rated), Solves())
+            self.troubles.extend(trouble(one.loaded) for one in rated)
             # What stands is asked of the best of them first: most often it does.
             for one in sorted(rated, key=attrgetter("cost")):
                 if one.cost == math.inf:
                     break
                 sturdy = self.evaluator.sturdily(build, one.blocks)
-                solves += trouble(one.loaded, sturdy) - trouble(one.loaded)
+                self.troubles.append(trouble(one.loaded, sturdy) - trouble(one.loaded))
                 if not sturdy.grown.resistance.stable:
                     continue
                 place = one.place
@@ -169,8 +163,8 @@ class Mason:
                 if falls is not None:
                     surest = falls, action
                 if not surest[0]:
-                    return *surest, solves
-        return *surest, solves
+                    return surest
+        return surest
 
     def _rated(
         self, build: Build, stone: Stone, places: Sequence[tuple[int, Resting]]
