@@ -14,7 +14,7 @@ class TimeIsUp(Exception):  # noqa: N818 - no error: the work ends here because 
     """The time limit struck in the midst of some work."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True)
 class Deadline:
     """When time is up."""
 

@@ -30,7 +30,7 @@ from drystone.search.wedging import wedged_up
 from drystone.search.yard import Yard
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True)
 class Job:
     """What all tasks of a search share."""
 

@@ -6,7 +6,7 @@ Repairs are chosen by other rehearsals in every turn, and those asked for by oth
 
 import pickle
 from collections import Counter
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from concurrent.futures import Executor
 from dataclasses import replace
 from functools import lru_cache
@@ -120,7 +120,7 @@ def changed(job: Job, packed: bytes, turn: int, number: int, change: Change) -> 
     """Return walls with a change that could be better; None when time is up."""
     try:
         yard = job.yard
-        wall, look = _begun(job.tools, packed, turn, job.until.at, job.until.clock)
+        wall, look = _begun(job, packed, turn)
         if change.wedged:
             (stone,) = change.stones
             wedged = one_more_wedge(wall.build, stone, yard)
@@ -152,11 +152,9 @@ def _better(
 
 
 @lru_cache(maxsize=1)
-def _begun(
-    tools: bytes, packed: bytes, turn: int, at: float, clock: Callable[[], float]
-) -> tuple[FoundWall, Rehearsals]:
+def _begun(job: Job, packed: bytes, turn: int) -> tuple[FoundWall, Rehearsals]:
     """Return the wall that a turn begins with, and its rehearsals, once in each process."""
-    yard = Job(tools, 0, Deadline(at, clock)).yard
+    yard = job.yard
     wall = found_again(pickle.loads(packed), yard)  # noqa: S301 - packed by the same program
     look = Rehearsals(yard, LOOK_RUNS, 2 + 2 * turn)
     return wall.judged(yard, rehearsals=look), look
