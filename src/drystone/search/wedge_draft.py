@@ -280,21 +280,22 @@ class WedgeDraft:
         moving = dict(zip(ids, (velocity / fastest).tolist(), strict=True))
         return Motion.of(moving, centroids, analysis.model.mu)
 
-    def alpha_with(self, model: RigidBlockModel, direction: Direction) -> float | None:
-        """Return what a grown wall carries in one direction, not certified.
+    def value_with(self, model: RigidBlockModel, direction: Direction) -> float | None:
+        """Return what a grown wall carries in one direction, over mu, not certified.
 
         None when it falls or the solver gives up.
         """
-        analysis, addition = self.analysis, model.added
+        analysis, addition, mu = self.analysis, model.added, self.resistance.mu
         assert addition is not None  # noqa: S101 - it was made by adding
         if isinstance(analysis, SimplexAnalysis):
             added = analysis.program.columns_of(addition)
             optimum = analysis.least if direction == "left" else analysis.greatest
             answer = optimum.solved_with(added) if added is not None else None
             if answer is not None and answer.status == OPTIMAL:
-                return max(0.0, optimum.sign * answer.alpha)
+                return max(0.0, optimum.sign * answer.alpha) / mu
         found = analysis.resistance_with(model).resistance
-        return (found.left if direction == "left" else found.right).alpha
+        alpha = (found.left if direction == "left" else found.right).alpha
+        return None if alpha is None else alpha / mu
 
 
 def analysis_of(build: Build) -> IncrementalAnalysis:

@@ -169,7 +169,7 @@ def _with_one_more(
     draft: WedgeDraft, number: int, barred: Barred, until: Deadline
 ) -> WedgeDraft | None:
     """Return a draft with one more wedge, the best one; None when none helps."""
-    value, mu = draft.resistance.value, draft.resistance.mu
+    value = draft.resistance.value
     if value is None:  # the solver gave up: it stood when it was built
         return None
     weaker = draft.weaker
@@ -181,10 +181,10 @@ def _with_one_more(
     for place in _resisting(draft, motion, barred):
         until.look()
         model = draft.model_with(number, place)
-        gained = _share(draft.alpha_with(model, weaker), mu)
+        gained = draft.value_with(model, weaker)
         if gained is None or gained < value + LEAST:
             continue
-        other = _share(draft.alpha_with(model, "right" if weaker == "left" else "left"), mu)
+        other = draft.value_with(model, "right" if weaker == "left" else "left")
         if other is not None and (after := min(gained, other)) >= value - SAME:
             worth.append((after, gained, place, model))
     if not worth:
@@ -195,11 +195,6 @@ def _with_one_more(
         worth, key=lambda one: (-round(one[0], 2), -round(one[1], 2), one[2].area_px)
     )
     return draft.wedged(number, best, model)
-
-
-def _share(alpha: float | None, mu: float) -> float | None:
-    """Return what a direction makes of F_LR; None when it is not known."""
-    return None if alpha is None else alpha / mu
 
 
 def _resisting(draft: WedgeDraft, motion: Motion, barred: Barred) -> list[WedgePlace]:
