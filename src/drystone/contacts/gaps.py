@@ -166,20 +166,18 @@ def _part_strangers(cells: NDArray[np.int64], grown: NDArray[np.int64], reach_px
 
 def _are_within(cells: NDArray[np.int64], one: int, other: int, reach_px: float) -> bool:
     """Tell whether the edges of two blocks are no further apart than the reach."""
-    here, there = np.argwhere(cells == one), np.argwhere(cells == other)
-    for _ in range(2):  # only what lies near the other's bounding box can be near it
-        margin = int(reach_px) + 1
-        near = (here >= there.min(axis=0) - margin) & (here <= there.max(axis=0) + margin)
-        here, there = there, here[near.all(axis=1)]
-        if not len(there):
-            return False
-    tree = cKDTree(here)
-    close = tree.query_ball_point(there, reach_px + 1.5)  # centres are at most sqrt 2 further
-    return any(
-        np.hypot(*np.maximum(np.abs(here[found] - pixel) - 1, 0).T).min() <= reach_px
-        for pixel, found in zip(there, close, strict=True)
-        if found
-    )
+    gaps, _ = cKDTree(_corners(cells, one)).query(_corners(cells, other))
+    return bool(gaps.min() <= reach_px)
+
+
+def _corners(cells: NDArray[np.int64], block: int) -> NDArray[np.intp]:
+    """Return the pixel corners around a block, (n, 2)."""
+    rows, cols = np.nonzero(cells == block)
+    top, left = rows.min(), cols.min()
+    inside = np.pad(cells[top : rows.max() + 1, left : cols.max() + 1] == block, 1)
+    around = np.stack([inside[:-1, :-1], inside[:-1, 1:], inside[1:, :-1], inside[1:, 1:]])
+    rim = np.argwhere(around.any(axis=0) & ~around.all(axis=0))
+    return np.asarray(rim + np.array([top, left]))
 
 
 def _room(wall: Labels, block: int, down: int, aside: int) -> int:
