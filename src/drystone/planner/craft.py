@@ -23,7 +23,6 @@ def action_craft(landscape: Landscape, stabilised: Group, stock: Stock, rest: Re
     posed, box = landscape.view(stabilised.placement.posed), landscape.box(stabilised.placement)
     at = stabilised.placement.row, box.left
     wedges_px = sum(wedge.area_px for wedge in stabilised.wedges)
-    height, void, gap, slot, headroom = _room(landscape, posed, at, stock, rest, wedges_px)
     neighbour = left_neighbour(landscape, box)
     step = 0.0 if neighbour is None else abs(box.top - neighbour.top) / stock.mean_height_px
     if is_boundary(landscape, box, stock.narrowest_px):
@@ -31,11 +30,7 @@ def action_craft(landscape: Landscape, stabilised: Group, stock: Stock, rest: Re
     else:
         third = interlocking_width_ratio(landscape, box, stock.narrowest_px)
     return Craft(
-        height=height,
-        void=void,
-        gap=gap,
-        slot=slot,
-        headroom=headroom,
+        **_room(landscape, posed, at, stock, rest, wedges_px),
         step=step,
         roughness=posed.top_roughness_px / stock.mean_height_px,
         upright=max(0.0, 1.0 - posed.width_px / posed.height_px),
@@ -60,9 +55,8 @@ def place_cost(
     at least this and its pose.  `posed` is the stone in the view of the landscape, `place` the row
     and column of the top-left corner of its mask.
     """
-    weights = score.height, score.void, score.gap, score.slot, score.headroom
     terms = _room(landscape, posed, place, stock, rest)
-    return math.fsum(weight * term for weight, term in zip(weights, terms, strict=True))
+    return math.fsum(getattr(score, name) * term for name, term in terms.items())
 
 
 def _room(
@@ -72,19 +66,19 @@ def _room(
     stock: Stock,
     rest: Rest,
     wedges_px: int = 0,
-) -> tuple[float, float, float, float, float]:
-    """Return height, void, gap, slot and headroom of :class:`Craft` at a place."""
+) -> dict[str, float]:
+    """Return the terms of :class:`Craft` that a place has, by their names."""
     row, col = place
     bottom = landscape.height_px - row - posed.height_px
     under = int(free_below(landscape.occupied, posed.bottom, row, col).sum()) - wedges_px
     left, right_width = free_beside(landscape.occupied, posed.mask, row, col)
-    return (
-        (bottom + posed.anchor[1]) / stock.mean_height_px,
-        under / stock.mean_area_px,
-        min(1.0, left / stock.mean_area_px),
-        int(rest.width_px[right_width]) * posed.height_px / stock.mean_area_px,
-        int(rest.height_px[row]) * posed.width_px / stock.mean_area_px,
-    )
+    return {
+        "height": (bottom + posed.anchor[1]) / stock.mean_height_px,
+        "void": under / stock.mean_area_px,
+        "gap": min(1.0, left / stock.mean_area_px),
+        "slot": int(rest.width_px[right_width]) * posed.height_px / stock.mean_area_px,
+        "headroom": int(rest.height_px[row]) * posed.width_px / stock.mean_area_px,
+    }
 
 
 def pose_cost(posed: PosedStone, stock: Stock, score: ScoreSettings) -> float:
