@@ -148,7 +148,7 @@ class Earlier:
     def tell(self) -> None:
         """Say what is gone on with."""
         if self.state is not None:
-            note(f"going on after {self.state.walls} walls")
+            note(f"going on after {self.state.reached.walls} walls")
         elif self.plan is not None:
             note(f"going on after {len(self.plan.stone_steps)} stones")
         elif self.begun:

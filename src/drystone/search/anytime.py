@@ -54,17 +54,14 @@ def searching(
     been added.  It ends with the budget or with the time of the yard; a wall that is not whole by
     then is none.  The walls do not depend on the processes that build them.
     """
-    settings = yard.settings
     job = Job.of(yard, seed)
     if isinstance(start, SearchState):
         at = start
-        reached = at.chains.reached if at.chains else _together(at.found)
-        yield _Round(at.number, at.before, job, settings.search, executor).after(reached, at)
+        yield Progress(**vars(at.reached), state=at)
     else:
         with suppress(TimeIsUp):
             start = start.judged(yard)
-        first = Reached.of(PackedWall.of(start))
-        yield Progress(**vars(first))
+        yield Progress(**vars(Reached.of([PackedWall.of(start)])))
         # Its wedges are told of with the next wall: a search that ends before that is repeated by
         # the budget 1, which is the wall without them.
         try:
@@ -73,7 +70,7 @@ def searching(
         except TimeIsUp:
             return
     while True:
-        one = _Round(at.number, at.before, job, settings.search, executor)
+        one = _Round(at.number, at.before, job, yard.settings.search, executor)
         chains = at.chains or (yield from one.first_walls(at.found))
         before = None if chains is None else (yield from one.improved(chains))
         if before is None:
@@ -112,8 +109,9 @@ class _Round:
                 if wall is None:
                     return None
                 found = (*found, wall)
-                yield self.after(_together(found), SearchState(self.number, self.before, found))
-        reached = _together(found)
+                state = SearchState(self.number, self.before, found)
+                yield Progress(**vars(state.reached), state=state)
+        reached = Reached.of(found)
         links = tuple(_links(found, self.number, search.chains))
         return Chains(reached, links, 0, reached.walls, reached.best.merit + NOTABLE)
 
@@ -134,8 +132,8 @@ class _Round:
                 more = Reached(built, link.best, link.solves - at.links[k].solves, link.kept)
                 links = (*at.links[:k], replace(link, kept=()), *at.links[k + 1 :])
                 at = replace(at, reached=at.reached + more, links=links, turn=k + 1)
-                state = SearchState(self.number, self.before, (), at) if built == each else None
-                yield self.after(at.reached, state)
+                state = SearchState(self.number, self.before, (), at)
+                yield Progress(**vars(state.reached), state=state if built == each else None)
                 if built < counts[k]:
                     # It became too late; what later chains have built is not in the budget.
                     return None
@@ -143,26 +141,12 @@ class _Round:
             if best.merit >= at.goal:
                 at = replace(at, better=walls, goal=best.merit + NOTABLE)
             if walls - at.better >= search.patience * len(best.groups) and walls < budget:
-                return self._in_all(at.reached)
+                return SearchState(self.number, self.before, (), at).reached
             # All chains know then which changes have helped in each.
             known = sum((link.learnt for link in at.links), at.links[0].known)
             again = [replace(link, known=known, learnt=Credits()) for link in at.links]
             at = replace(at, links=tuple(_shared(again)), turn=0)
         return None
-
-    def after(self, reached: Reached, state: SearchState | None) -> Progress:
-        """Say how far the search is, from what this round has come to."""
-        whole = self._in_all(reached)
-        return Progress(**vars(whole), state=state)
-
-    def _in_all(self, reached: Reached) -> Reached:
-        return reached if self.before is None else self.before + reached
-
-
-def _together(walls: Sequence[PackedWall]) -> Reached:
-    """Say what the first walls of a round have come to."""
-    first, *others = map(Reached.of, walls)
-    return sum(others, first)
 
 
 def _links(found: Sequence[PackedWall], number: int, chains: int) -> list[Link]:

@@ -168,10 +168,8 @@ class RehearsalFalls(NamedTuple):
     first: Counter[int]  # in how many runs which stone falls first, in the order of placement
     begins: Counter[int]  # in how many falls begin when which stone is laid
 
-    @classmethod
-    def none(cls) -> "RehearsalFalls":
-        """Say that nothing falls."""
-        return cls(0.0, Counter(), Counter())
+
+NO_FALLS = RehearsalFalls(0.0, Counter(), Counter())
 
 
 @dataclass(frozen=True)
@@ -194,7 +192,7 @@ class FoundWall:
     solves: Solves = field(default_factory=Solves)  # trouble with it
     courses: Courses | None = None  # None for a wall that was not planned before
     # in its rehearsals, once it was judged
-    falls: RehearsalFalls = field(default_factory=RehearsalFalls.none)
+    falls: RehearsalFalls = NO_FALLS
     # Stones that move when it fails in its weaker direction, the fastest first, once it was judged.
     movers: tuple[int, ...] = ()
 
@@ -324,7 +322,7 @@ class Rehearsals:
         """
         blocks, groups = groups_of(build.wall), build.wall.groups
         if not blocks:
-            return RehearsalFalls.none()
+            return NO_FALLS
         settings = self._yard.settings
         errors = self._errors or BuilderErrors.of_precision(HAND, mean_size(blocks))
         pairs = zip(groups, self._first, strict=False)

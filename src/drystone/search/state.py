@@ -4,6 +4,7 @@ What is drawn depends on the seed and on the numbers of walls, so this and the i
 find the walls again that a search would have found.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from drystone.planner.build import Solves
@@ -35,9 +36,10 @@ class Reached:
     kept: tuple[PackedWall, ...]  # those that none beats in every figure of merit
 
     @classmethod
-    def of(cls, wall: PackedWall) -> "Reached":
-        """Begin with a wall."""
-        return cls(1, wall, wall.solves, archived((), [wall]))
+    def of(cls, walls: Sequence[PackedWall]) -> "Reached":
+        """Say what some first walls have come to."""
+        first, *others = (cls(1, wall, wall.solves, archived((), [wall])) for wall in walls)
+        return sum(others, first)
 
     def __add__(self, later: "Reached") -> "Reached":
         return Reached(
@@ -69,10 +71,10 @@ class SearchState:
     chains: Chains | None = None
 
     @property
-    def walls(self) -> int:
-        """How many walls the search has built."""
-        before = self.before.walls if self.before else 0
-        return before + (self.chains.reached.walls if self.chains else len(self.found))
+    def reached(self) -> Reached:
+        """What the search has come to."""
+        own = self.chains.reached if self.chains else Reached.of(self.found)
+        return own if self.before is None else self.before + own
 
 
 @dataclass(frozen=True, eq=False)
