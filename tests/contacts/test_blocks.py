@@ -55,7 +55,7 @@ def test_an_empty_image_has_no_blocks():
 @pytest.mark.parametrize(
     "labels",
     [np.ones(4, np.uint32), np.ones((2, 2)), np.array([[1, -1]]), np.ones((2, 2, 3), np.uint8),
-     np.array([[1, 2**63]], np.uint64), None],
+     np.array([[1, 2**63]], np.uint64), np.ones((2, 2), bool), None],
 )  # fmt: skip
 def test_what_is_no_label_image_is_refused(labels):
     for one in (labels, np.asarray(labels).tolist()):
