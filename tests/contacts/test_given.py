@@ -199,7 +199,7 @@ def bed(pair, y, normal, reach=0):
         (one_block(polygon=square(0, 0, 1e-150)), "E303", "another unit"),
         ({"blocks_xywh": [[1e17, 0, 1, 1]]}, "E303", "origin"),
         (one_block(polygon=square(0, 1e10, 1)), "E303", "origin"),
-        ({**PAIR, "mu": -1}, "E302", ""),
+        *(({**PAIR, "mu": mu}, "E302", "") for mu in (-1, math.nan, math.inf)),
         ({**PAIR, "mu": 10**400}, "E302", ""),
         ({"blocks_xywh": [[0, -1, 1, 3]]}, "E304", "up"),
         # Bars that cross, of which no corner is inside of the other.

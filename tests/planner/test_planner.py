@@ -215,7 +215,6 @@ def test_what_is_not_said_stays_and_an_int_is_a_float_where_one_is_wanted():
     assert (settings.mu, type(settings.mu)) == (1.0, float)
     assert settings.placement.tries == 3
     assert settings.placement.rule == method_settings("best").placement.rule
-    assert settings.updated({}) == settings
 
 
 WRONG = [

@@ -105,9 +105,8 @@ METHODS = ("both", "rotation", "wedge", "none")
 
 def stabilise(occupied, trial, side, stock, settings):
     """Stabilise a stone without memory."""
-    falls = falls_to(occupied, trial, settings)
-    if not falls:
-        return None if falls is None else Group(Placement(*trial, side))
+    if falls_to(occupied, trial, settings) == 0:
+        return Group(Placement(*trial, side))
     return make_stable(occupied, trial, side, BOOK, stock, settings).stabilised
 
 
