@@ -195,16 +195,17 @@ def mechanism_frames(
     alpha: float | None = None,
     *,
     frames: int = 24,
-    **options: Any,
+    load: str = "",
+    numbers: bool | Mapping[int, int] = False,
 ) -> tuple[Image.Image, ...]:
     """Draw a mechanism from rest to the largest displacement of its picture and back.
 
-    Parameters and options are those of :func:`plot_mechanism`.  There are at least 2 frames, RGB
-    and of one size; the motion slows down at both ends, and the last frame leads to the first.
+    Parameters as for :func:`plot_mechanism`.  There are at least 2 frames, RGB and of one size; the
+    motion slows down at both ends, and the last frame leads to the first.
     """
     if frames < 2:
         raise ValueError(f"an animation has at least 2 frames, not {frames}")
-    ax = plot_mechanism(wall, mechanism, direction, alpha, **options)
+    ax = plot_mechanism(wall, mechanism, direction, alpha, load=load, numbers=numbers)
     figure, motion = ax.figure.get_figure(root=True), motion_of(wall, mechanism)
     box = figure.get_tightbbox().padded(0.08)
     dpi = LONGER_SIDE_PX / max(box.width, box.height)
