@@ -90,7 +90,7 @@ def read_rows(
 
     `kinds` are the columns, and what reads a cell of each.
     """
-    if not path.exists():
+    if not path.is_file():
         return
     with path.open(newline="", encoding="utf-8") as file:
         rows = csv.DictReader(file)

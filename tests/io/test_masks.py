@@ -7,23 +7,36 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import array_shapes, arrays
 from PIL import Image
 from scipy import ndimage
+from skimage.measure import label
 
 from drystone.errors import InputError, LabelImageError, UsageError
+from drystone.io.labels import components
 from drystone.io.read_stones import ReadSettings, read_stones
 from drystone.io.walls import read_wall
 from tests.io.known_stones import PIECES, compare, label_image, masks
 from tests.io.pictures import areas, codes, discs, many_stones, said, two_stones
+
+small_masks = arrays(bool, array_shapes(min_dims=2, max_dims=2, max_side=12))
+
+
+@given(small_masks)
+def test_components_are_numbered_in_row_order(mask):
+    np.testing.assert_equal(components(mask), label(mask, connectivity=2, return_num=True))
 
 
 @pytest.mark.parametrize(
     ("value", "dtype"),
     [(1, bool), (1, np.uint8), (255, np.uint8), (1, float), (300, np.uint16)],
 )
-def test_two_values_are_a_mask(value, dtype):
-    stones = read_stones(two_stones(value, value, dtype))
+def test_two_values_are_a_mask(tmp_path, value, dtype):
+    mask = two_stones(value, value, dtype)
+    stones = read_stones(mask)
     assert areas(stones) == {1: 375, 2: 600}
     assert codes(stones) == ["W114"]
     assert "2 components, numbered in row order" in stones.notices[0].message
+    if mask.dtype in (bool, np.uint8):
+        Image.fromarray(mask).save(tmp_path / "m.png")
+        assert areas(read_stones(tmp_path / "m.png")) == {1: 375, 2: 600}
 
 
 def test_stones_that_meet_at_a_corner_are_one_component():

@@ -99,6 +99,12 @@ def test_what_touches_does_not_overlap_and_what_is_pushed_in_does(pair, gap, exp
     assert depth <= (10.0**exponent + RIGHT) * size
 
 
+def test_a_spike_without_an_area_is_no_part_of_a_shape():
+    spiked = shape_of(np.array([(0, 0), (2, 0), (2, 1), (3, 1), (2, 1), (0, 1)], float))
+    assert spiked.area == 2.0
+    assert sum(part.area for part in common_parts(spiked, box(1, -1, 9, 9))) == pytest.approx(1.0)
+
+
 def test_deepest_overlap_names_the_pair():
     outlines = [(4, box(0, 0, 16, 8)), (2, box(0, 8, 16, 8)), (9, box(14, -2, 16, 8))]
     depth, pair = deepest_overlap(outlines)

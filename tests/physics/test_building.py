@@ -83,17 +83,23 @@ def test_a_wedge_keeps_its_stone_and_a_turn_alone_is_a_fall():
     assert last.share == pytest.approx(last.move_px / np.sqrt(76 * 12))
 
 
-def test_who_comes_last_makes_room_and_nothing_is_thrown():
-    """A stone put into another goes up or aside; between two, all three are pushed."""
-    for along, up, deep in ((0, 18, 2.0), (37.5, 0, 2.5)):
-        built = build_up(single((0, 0, 40, 20), (along, up, 40, 20)))
-        stood, came = built.moves
-        assert (stood.overlap_px, came.overlap_px) == pytest.approx((0.0, deep), abs=0.01)
-        assert stood.move_px < 0.2
-        # By the overlap, but for what the engine leaves, .003 of the size of the blocks.
-        assert came.move_px == pytest.approx(deep, abs=0.2)
-        assert came.turn_deg < 0.1
-        assert built.stands
+def test_an_overlap_is_pushed_apart_and_nothing_is_thrown():
+    built = build_up(single((0, 0, 40, 20), (0, 18, 40, 20)))
+    lower, upper = built.moves
+    assert lower.overlap_px == pytest.approx(0.0, abs=1e-6)
+    assert upper.overlap_px == pytest.approx(2.0, abs=0.01)
+    # It goes up by the overlap, but for what the engine leaves, .003 of the size of the blocks.
+    assert upper.move_px == pytest.approx(2.0, abs=0.15)
+    assert upper.turn_deg < 0.1
+    assert built.stands
+
+
+def test_who_comes_last_makes_room():
+    """A stone that is put 3 px into its neighbour goes aside; between two, all three are pushed."""
+    stood, came = build_up(single((0, 0, 40, 20), (37, 0, 40, 20))).moves
+    assert (stood.overlap_px, came.overlap_px) == pytest.approx((0.0, 3.0), abs=0.01)
+    assert stood.move_px < 0.2
+    assert came.move_px == pytest.approx(3.0, abs=0.2)
     between = build_up(single((0, 0, 40, 20), (76, 0, 40, 20), (38, 0, 40, 20)))
     assert between.stands
     left, middle, right = (between.outlines[block][:, 0].mean() for block in (1, 3, 2))

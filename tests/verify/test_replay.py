@@ -24,6 +24,29 @@ from tests.verify.examples import SLAB, WEDGE, example
 from tests.verify.tampering import changed, moved, reshaped
 
 
+def assert_near(found, expected):
+    """They are equal but for the rounding of lengths that were in metres."""
+    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize("make", [example, exact_example])
+@pytest.mark.parametrize(("scale", "px_per_m"), [(1.0, None), (1.0, 137.0), (0.5, 211.3)])
+def test_wall_is_rebuilt_to_the_pixel(make, scale, px_per_m):
+    made = make(scale, px_per_m)
+    found = rebuild_wall(read_again(made.plan), made.stones)
+    np.testing.assert_array_equal(found.labels, made.wall.labels)
+    assert found.site == made.wall.site
+    assert [p.side for p in found.placements] == [p.side for p in made.wall.placements]
+    (mine,), (its,) = found.wedges, made.wall.wedges
+    assert (mine.id, mine.under, mine.row, mine.col) == (WEDGE, SLAB, its.row, its.col)
+    np.testing.assert_array_equal(mine.mask, its.mask)
+    assert (mine.corners is None) == (make is example)
+    if make is exact_example:
+        assert_near(mine.corners, its.corners)
+        for one, other in zip(found.placements, made.wall.placements, strict=True):
+            assert_near(one.settled.corners, other.settled.corners)
+
+
 @repeatable(80)
 @given(
     stones(stone_id=6, max_px=12),

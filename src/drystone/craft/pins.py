@@ -180,7 +180,10 @@ def least_wedge_loads(
 
 
 def _vertical(model: RigidBlockModel) -> tuple[NDArray[np.int64], Floats]:
-    """Return of each edge of a friction cone what it presses onto, and how hard; the ground too."""
+    """Return of each edge of a friction cone what it presses onto, and how hard.
+
+    It is 0 where it presses onto the ground, or sideways.
+    """
     pressed, weights = [], []
     for face in model.interfaces:
         normal, tangent = face.normal[1], -face.normal[0] * model.friction(face)

@@ -177,7 +177,7 @@ def block_path(loops: Iterable[Loop]) -> Path:
 def draw_block(
     ax: Axes, loops: Iterable[Loop], gid: str, *, fill: str = "none", **style: Any
 ) -> None:
-    """Add a block to the axes; `gid` names it (in SVG files too)."""
+    """Add a block to axes that are fitted; `gid` names it (in SVG files too)."""
     drawn = {"linewidth": 0.6, "edgecolor": OUTLINE_COLOUR, "joinstyle": "round", **style}
     # Not as a patch of the axes, which are fitted: limits of a thousand paths take seconds.
     ax.add_artist(PathPatch(block_path(loops), facecolor=fill, gid=gid, **drawn))

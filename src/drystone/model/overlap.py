@@ -31,7 +31,11 @@ Segments = tuple[Points, Points]
 def shape_of(corners: Points) -> shapely.Geometry:
     """Return the area of a polygon; rounding may have made a very fine corner cross itself."""
     outline = shapely.Polygon(corners)
-    return outline if outline.is_valid else shapely.make_valid(outline)
+    if outline.is_valid:
+        return outline
+    # Where it crossed itself, lines without an area may be left as well.
+    pieces = shapely.get_parts(shapely.get_parts(shapely.make_valid(outline)))
+    return shapely.MultiPolygon([piece for piece in pieces if piece.area > 0.0])
 
 
 def common_parts(first: shapely.Geometry, second: shapely.Geometry) -> tuple[shapely.Polygon, ...]:

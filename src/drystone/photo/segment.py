@@ -7,7 +7,6 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 from skimage.feature import peak_local_max
-from skimage.measure import regionprops
 from skimage.segmentation import watershed
 
 from drystone.errors import InputError
@@ -247,10 +246,13 @@ def _no_stones(cut: int, ground: GroundModel) -> InputError:
 def shapes(mask: NDArray[np.integer] | Mask, why: str) -> tuple[LeftOut, ...]:
     """Return the shapes of labels, or the pieces of a mask, the largest first."""
     labels = ndimage.label(mask)[0] if mask.dtype == bool else mask
-    found = []
-    for region in regionprops(labels):
-        y, x = region.centroid
-        found.append(LeftOut((float(x) + 0.5, float(y) + 0.5), int(region.area), why))
+    areas = np.bincount(labels.ravel())
+    numbers = [int(k) for k in np.flatnonzero(areas) if k]
+    middles = ndimage.center_of_mass(labels > 0, labels, numbers) if numbers else []
+    found = [
+        LeftOut((float(x) + 0.5, float(y) + 0.5), int(areas[k]), why)
+        for k, (y, x) in zip(numbers, middles, strict=True)
+    ]
     return tuple(sorted(found, key=lambda one: -one.area_px))
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import shapely
 
 from drystone.kernels.polygons import Points
-from drystone.model.overlap import common_parts
+from drystone.model.overlap import common_parts, shape_of
 
 _Corner = tuple[float, float]
 _Side = tuple[_Corner, _Corner]
@@ -95,7 +95,7 @@ def _reaching(
         for side, moved in sides:
             region = _left_of(region, side, reach * size if moved else 0.0)
         # In floats a part may leave out a flat corner of the stone, and stick out of it there.
-        found = common_parts(shapely.Polygon(region), whole) if region else ()
+        found = common_parts(shape_of(np.array(region)), whole) if len(region) > 2 else ()
         piece = next((p for p in found if p.intersects(shapely.Point(inside))), None)
         if piece is not None and not piece.interiors:
             corners = shapely.get_coordinates(shapely.orient_polygons(piece))[:-1]

@@ -168,8 +168,10 @@ class RehearsalFalls(NamedTuple):
     first: Counter[int]  # in how many runs which stone falls first, in the order of placement
     begins: Counter[int]  # in how many falls begin when which stone is laid
 
-
-NO_FALLS = RehearsalFalls(0.0, Counter(), Counter())
+    @classmethod
+    def none(cls) -> "RehearsalFalls":
+        """Say that nothing falls."""
+        return cls(0.0, Counter(), Counter())
 
 
 @dataclass(frozen=True)
@@ -192,7 +194,7 @@ class FoundWall:
     solves: Solves = field(default_factory=Solves)  # trouble with it
     courses: Courses | None = None  # None for a wall that was not planned before
     # in its rehearsals, once it was judged
-    falls: RehearsalFalls = NO_FALLS
+    falls: RehearsalFalls = field(default_factory=RehearsalFalls.none)
     # Stones that move when it fails in its weaker direction, the fastest first, once it was judged.
     movers: tuple[int, ...] = ()
 
@@ -322,7 +324,7 @@ class Rehearsals:
         """
         blocks, groups = groups_of(build.wall), build.wall.groups
         if not blocks:
-            return NO_FALLS
+            return RehearsalFalls.none()
         settings = self._yard.settings
         errors = self._errors or BuilderErrors.of_precision(HAND, mean_size(blocks))
         pairs = zip(groups, self._first, strict=False)

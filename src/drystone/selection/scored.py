@@ -7,12 +7,10 @@ are analysed, and the lateral resistance counts as one more term.
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from operator import attrgetter
 
 from drystone.model.settings import Ranged, ranged
-
-BONUSES = ("area", "thickness")
-"""Terms of :class:`Craft` whose weights are bonuses."""
 
 PIN_BONUS = 2.0
 """Bonus of an action that places a pinned stone: so it goes in early where it fits about as well as
@@ -96,7 +94,12 @@ class ScoreSettings(Ranged):
     analysed: int = ranged(4, least=1)
 
 
+_costs = attrgetter(*(one.name for one in fields(Craft) if one.name not in ("area", "thickness")))
+"""Gives the costs of an action, or their weights, which have the same names."""
+
+
 def craft_cost(craft: Craft, settings: ScoreSettings) -> float:
     """Return the weighted cost of an action, lower is better; large stones earn a bonus."""
-    terms = {name: getattr(settings, name) * value for name, value in vars(craft).items()}
-    return math.fsum(-term if name in BONUSES else term for name, term in terms.items())
+    costs = [weight * cost for weight, cost in zip(_costs(settings), _costs(craft), strict=True)]
+    bonus = settings.area * craft.area, settings.thickness * craft.thickness
+    return math.fsum([*costs, -bonus[0], -bonus[1]])

@@ -30,7 +30,7 @@ both were not enough for; where it does not, HiGHS may be in trouble for a minut
 """
 
 NO_MORE = 1e-12
-"""What alpha of a wall with a stone may differ by from that of the wall, and counts as the same."""
+"""Alphas of a wall and of the wall with a stone that differ by no more count as the same."""
 
 NO_WORK = 1e-11
 """Work of a stone on the mechanism of the wall that counts as none."""
@@ -193,7 +193,8 @@ def _mechanism_near(near: Near, end: PrimalDual) -> PrimalDual | None:
     """Return alpha and a mechanism in which bodies near the stone move as they will.
 
     All others move as in the mechanism of the wall, all slower or faster by one factor, or rest.
-    Without any alpha it is a fall.  None where there is none, or alpha is greater than before.
+    Without any alpha it is a fall.  None where there is none, or alpha is greater than before by
+    more than `NO_MORE`.
     """
     program, added = near.program, near.added
     wall, place = program.cones, near.strip(REACHES[1]).places

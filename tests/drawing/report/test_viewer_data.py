@@ -13,7 +13,7 @@ from PIL import Image
 import drystone as ds
 from drystone.contacts.given import model_from_json
 from drystone.drawing import view_of_assembly, view_of_result, view_of_wall, write_report
-from drystone.drawing.assembly import read_assembly
+from drystone.drawing.assembly import read_assembly, scaled_resistance
 from drystone.drawing.palette import cluster_colour
 from drystone.drawing.photo import VIEWER_PX, StonePhoto
 from drystone.drawing.report.viewer_data import PATTERNS
@@ -144,6 +144,16 @@ def test_a_plan_in_memory_and_its_files_show_the_same(tmp_path):
         assert ours == pytest.approx(theirs, abs=1e-4)
 
 
+def test_a_scale_told_afterwards_makes_metres(tmp_path):
+    ds.write_plan_folder(planned(), tmp_path)
+    px, m = (view_of_assembly(read_assembly(tmp_path, px_per_m=s)) for s in (None, 50.0))
+    assert (px["unit"], m["unit"], m["size"]) == ("px", "m", [2.2, 0.8])
+    centroid = [v / 50 for v in px["parts"][0]["centroid"]]
+    assert m["parts"][0]["centroid"] == pytest.approx(centroid, abs=2e-5)
+    assert m["parts"][0]["source"] == px["parts"][0]["source"]
+    assert unbalanced(m, "left", -m["mechanisms"]["left"]["alpha"]) < 2e-4
+
+
 def test_what_is_not_planned_is_shown_too():
     labels = np.zeros((40, 60), np.uint32)
     labels[20:, 5:25], labels[20:, 25:45], labels[:20, 15:35] = 7, 9, 12
@@ -223,6 +233,20 @@ def test_what_is_fixed_and_what_has_its_own_friction_is_said():
     assert said[-4:-2] == ["Fixed like the ground: 1.", "Held by guides: 2 (turn)."]
     assert "densities" in said[-2]
     assert "of their own" in said[-1]
+
+
+def test_a_scaled_analysis_is_that_of_the_scaled_wall():
+    def analysed(scale):
+        blocks = [[0, 0, 6, 1], [2, 1, 1, 2], [2, 3, 1, 2]]
+        given = {"blocks_xywh": [[v * scale for v in block] for block in blocks]}
+        return lateral_resistance(model_from_json(given), mechanism=True)
+
+    known, found = analysed(0.01), scaled_resistance(analysed(1.0), 0.01)
+    assert found.right.alpha == pytest.approx(known.right.alpha)
+    assert found.right.forces == pytest.approx(known.right.forces, abs=1e-9)
+    ours, theirs = found.right.mechanism.velocity, known.right.mechanism.velocity
+    factor = np.abs(theirs).max() / np.abs(ours).max()
+    assert ours * factor == pytest.approx(theirs, rel=1e-6, abs=1e-6)
 
 
 @pytest.mark.parametrize("zoom", [0.5, 1])  # smaller and larger than VIEWER_PX
