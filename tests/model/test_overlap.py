@@ -103,6 +103,10 @@ def test_a_spike_without_an_area_is_no_part_of_a_shape():
     spiked = shape_of(np.array([(0, 0), (2, 0), (2, 1), (3, 1), (2, 1), (0, 1)], float))
     assert spiked.area == 2.0
     assert sum(part.area for part in common_parts(spiked, box(1, -1, 9, 9))) == pytest.approx(1.0)
+    flat = shape_of(np.array([(0, 0), (1, 1), (2, 2)], float))
+    for other in (box(0, 0, 2, 2), flat):
+        assert common_parts(flat, other) == common_parts(other, flat) == ()
+        assert overlap_depth(flat, other) == 0.0
 
 
 def test_deepest_overlap_names_the_pair():

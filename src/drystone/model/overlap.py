@@ -29,7 +29,10 @@ Segments = tuple[Points, Points]
 
 
 def shape_of(corners: Points) -> shapely.Geometry:
-    """Return the area of a polygon; rounding may have made a very fine corner cross itself."""
+    """Return the area of a polygon, empty where it has none.
+
+    Rounding may have made a very fine corner cross itself.
+    """
     outline = shapely.Polygon(corners)
     if outline.is_valid:
         return outline
@@ -86,7 +89,7 @@ def _near(
     first: shapely.Geometry, second: shapely.Geometry
 ) -> tuple[shapely.Geometry, shapely.Geometry, Points]:
     """Return two shapes moved to the origin, and where they were: far away there are few digits."""
-    origin = shapely.bounds([first, second])[:, :2].max(axis=0)
+    origin = np.nan_to_num(shapely.bounds([first, second])[:, :2].max(axis=0))  # of nothing: NaN
     one, other = shapely.transform([first, second], lambda xy: xy - origin)
     return one, other, origin
 

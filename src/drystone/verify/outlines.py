@@ -76,8 +76,7 @@ def _simple(corners: Points) -> Points | None:
     shape = shapely.Polygon(corners)
     if shape.is_valid and shape.exterior.is_ccw:
         return corners
-    parts = [p for p in shapely.get_parts(shape_of(corners)) if isinstance(p, shapely.Polygon)]
-    largest = max(parts, key=lambda part: part.area, default=None)
+    largest = max(shapely.get_parts(shape_of(corners)), key=lambda part: part.area, default=None)
     return None if largest is None or largest.area < NO_AREA_PX else _ring(largest)
 
 

@@ -21,7 +21,7 @@ from drystone.drawing.export.formats import ExportSettings, Files
 from drystone.drawing.export.solids import Solid, inertia, material, solid_of_part, stl_bytes
 from drystone.io.json_text import json_text, number
 from drystone.model.frames3d import DOWN, Matrix, Pose3d, Vector
-from drystone.model.overlap import common_parts
+from drystone.model.overlap import common_parts, shape_of
 
 FRAMES = {
     "convention": "Right-handed, metres. A matrix is 4x4, rows first, and maps points of the part "
@@ -163,9 +163,9 @@ def blocked_m(assembly: Assembly, part: Part) -> float:
     high = low + np.array([0.0, lift])
     following = np.roll(np.arange(len(low)), -1)
     sides = np.stack([low, low[following], high[following], high], axis=1)
-    whole = [shapely.Polygon(low), shapely.Polygon(high), *shapely.polygons(sides)]
+    whole = [shape_of(low), shape_of(high), *shapely.polygons(sides)]
     way = shapely.union_all([shape for shape in whole if shape.area > 0.0])
-    others = [shapely.Polygon(other.corners) for other in assembly.before(part)]
+    others = [shape_of(other.corners) for other in assembly.before(part)]
     boxes = [piece.bounds for other in others for piece in common_parts(way, other)]
     return max((right - left for left, _, right, _ in boxes), default=0.0)
 
