@@ -32,7 +32,7 @@ from drystone.statics.local_update import Near, PrimalDual, forces_at, local_upd
 from drystone.statics.lp.certificate import certified_fall, optimum_of
 from drystone.statics.lp.cone_program import ConeProgram
 from drystone.statics.lp.extremes import Extreme, certified_extreme
-from drystone.statics.lp.highs import TOLERANCE, HighsSession, WarmBasis, WarmSession
+from drystone.statics.lp.highs import TOLERANCE, WARM, HighsSession, WarmBasis, WarmSession
 from drystone.statics.lp.program import EquilibriumProgram, Units, assemble
 from drystone.statics.model import GROUND, Addition, Direction, RigidBlockModel
 from drystone.statics.result import Certificate, LateralResistance, LimitResult, LimitStatus
@@ -193,18 +193,25 @@ class SimplexAnalysis(ConeAnalysis):
         return answer, _bound_of(self.program, added, answer, optimum.sign, SIMPLEX)
 
 
+class LocalEnd(NamedTuple):
+    """One end of the range of alpha of a wall, and where HiGHS looks for it from."""
+
+    known: PrimalDual
+    basis: WarmBasis
+    unsolved: int = 0  # stones that HiGHS knows no more of than what carries them
+
+
 @dataclass(frozen=True, eq=False)
 class LocalAnalysis(ConeAnalysis):
     """Many loose stones: what a stone changes near it first, then the whole wall.
 
     See :mod:`drystone.statics.local_update` for the small programs.  An answer of theirs counts
-    only with a certificate of the whole wall; without one HiGHS solves the whole program.
+    only with a certificate of the whole wall; without one HiGHS solves the whole program for that
+    end.
     """
 
-    by_highs: "HighsAnalysis"  # the same wall in HiGHS, the columns in the same order
-    greatest: PrimalDual  # both ends of the range of alpha
-    least: PrimalDual
-    unsolved: int = 0  # stones that HiGHS knows no more of than what carries them
+    greatest: LocalEnd
+    least: LocalEnd
 
     @classmethod
     def of(cls, model: RigidBlockModel, units: Units) -> IncrementalAnalysis:
@@ -213,71 +220,55 @@ class LocalAnalysis(ConeAnalysis):
         addition = Addition(RigidBlockModel((), (), model.mu), model.blocks, model.interfaces)
         program = ConeProgram.empty(units)
         added = program.columns_of(addition)
-        if added is None:
+        if added is None or by_highs.extremes is None:
             return by_highs
-        return cls._of(by_highs, by_highs.result, program.appended(addition, added))
-
-    @classmethod
-    def _of(
-        cls, by_highs: "HighsAnalysis", result: IncrementalResult, program: ConeProgram
-    ) -> IncrementalAnalysis:
-        """Look near stones from now on, if both ends are known."""
-        if by_highs.extremes is None:
+        if any(extreme.status is not LimitStatus.OPTIMAL for extreme in by_highs.extremes):
             return by_highs
-        least, greatest = by_highs.extremes
-        if not least.status is greatest.status is LimitStatus.OPTIMAL:
-            return replace(by_highs, result=result)
+        least, greatest = (
+            LocalEnd(_known(sign, extreme), basis)
+            for sign, extreme, basis in zip((-1, 1), by_highs.extremes, by_highs.bases, strict=True)
+        )
+        program = program.appended(addition, added)
+        return cls(by_highs.model, by_highs.result, program, greatest, least)
 
-        def known(sign: int, extreme: Extreme) -> PrimalDual:
-            columns, duals = extreme.solution.optimum
-            return PrimalDual(sign, extreme.alpha, columns[1:], -duals)
-
-        ends = known(1, greatest), known(-1, least)
-        return cls(by_highs.model, result, program, by_highs, *ends)
+    def _in_highs(self) -> "HighsAnalysis":
+        bases = WarmBases(self.least.basis, self.greatest.basis)
+        return HighsAnalysis(self.model, self.result, self.program.units, bases)
 
     def _result_with(self, model: RigidBlockModel) -> IncrementalResult:
         grown = self._grown(model)
-        bounds = None if grown is None else self._bounds(grown[1])
-        if bounds is None:
-            return self.by_highs.resistance_with(model)
-        return _result_between(model, bounds)
+        if grown is None:
+            return self._in_highs().resistance_with(model)
+        return _result_between(model, self._bounds(model, grown[1]))
 
     def _extended_to(self, model: RigidBlockModel) -> IncrementalAnalysis:
         grown = self._grown(model)
         if grown is None:
-            return self.by_highs.extended(model)
+            return self._in_highs().extended(model)
         addition, added = grown
-        program = self.program.appended(addition, added)
         near = Near(self.program, added)
-        found = [self._found_near(near, *ends) for ends in self._ends]
-        bounds = [bound for _, bound in found]
-        known = not any(bound is None or bound.falls for bound in bounds)
-        if known and self.unsolved < UNSOLVED:
-            result, after = _result_between(model, bounds), model.forgetting()
-            greatest, least = (end for end, _ in found if end is not None)
-            starts = self._followed(result, after, added, (least, greatest))
-            return LocalAnalysis(after, result, program, starts, greatest, least, self.unsolved + 1)
-        by_highs = self.by_highs.extended(model)
-        assert isinstance(by_highs, HighsAnalysis)  # noqa: S101 - it goes on as what it is
-        return self._of(by_highs, by_highs.result, program)
-
-    def _followed(
-        self,
-        result: IncrementalResult,
-        model: RigidBlockModel,
-        added: Added,
-        ends: tuple[PrimalDual, PrimalDual],
-    ) -> "HighsAnalysis":
-        """Let HiGHS know of a stone without solving: the bases get what carries it."""
-        count, rows = len(added.cones.first), 3 * len(added.weights)
-        pairs = zip(self.by_highs.bases.without(added.closed), ends, strict=True)
-        bases = WarmBases(
-            *(b.carrying(end.forces[len(end.forces) - count :], rows) for b, end in pairs)
-        )
-        return HighsAnalysis(model, result, self.program.units, bases)
+        ends, bounds = [], []
+        for end, opposite in self._ends:
+            found, bound = None, None
+            if end.unsolved < UNSOLVED:
+                found, bound = self._found_near(near, end.known, opposite.known)
+            if found is not None and bound is not None:
+                new = len(added.cones.first)
+                # HiGHS is told of the stone without solving: the basis gets what carries it.
+                basis = end.basis.without(added.closed)
+                basis = basis.carrying(found.forces[-new:], 3 * len(added.weights))
+                after = LocalEnd(found, basis, end.unsolved + 1)
+            else:
+                after, bound = self._solved(model, added, end)
+            if bound is None or bound.falls:
+                return self._in_highs().extended(model)
+            ends.append(after)
+            bounds.append(bound)
+        program, result = self.program.appended(addition, added), _result_between(model, bounds)
+        return LocalAnalysis(model.forgetting(), result, program, *ends)
 
     @property
-    def _ends(self) -> tuple[tuple[PrimalDual, PrimalDual], ...]:
+    def _ends(self) -> tuple[tuple[LocalEnd, LocalEnd], ...]:
         """Both ends, each with the opposite one."""
         return (self.greatest, self.least), (self.least, self.greatest)
 
@@ -290,18 +281,34 @@ class LocalAnalysis(ConeAnalysis):
             return None, None
         return found, _bound_of(self.program, near.added, found, end.sign, LOCAL)
 
-    def _bounds(self, added: Added) -> "tuple[Bound, ...] | None":
+    def _solved(
+        self, model: RigidBlockModel, added: Added, end: LocalEnd
+    ) -> "tuple[LocalEnd, Bound | None]":
+        """Let HiGHS solve for one end of the whole wall with a stone."""
+        program, bases = self._in_highs().prepared(model)
+        session, sign = WarmSession(program), end.known.sign
+        basis = bases.greatest if sign == 1 else bases.least
+        extreme = _warm_extreme(program, session, basis, sign)
+        if extreme.status not in (LimitStatus.OPTIMAL, LimitStatus.UNSTABLE):
+            return end, None
+        found = _known(sign, extreme)
+        bound = _bound_of(self.program, added, found, sign, WARM)
+        return LocalEnd(found, session.basis() or basis), bound
+
+    def _bounds(self, model: RigidBlockModel, added: Added) -> "tuple[Bound | None, ...]":
         """Find the end that is weaker in the wall; of the other, whether it is no weaker (LLC).
 
-        A fall alone says enough.  None where an end is not found near the stone.
+        A fall alone says enough.  None where an end is not found.
         """
         near, found = Near(self.program, added), dict[int, Bound]()
-        for end, opposite in sorted(self._ends, key=lambda ends: abs(ends[0].alpha)):
+        for one, other in sorted(self._ends, key=lambda ends: abs(ends[0].known.alpha)):
+            end, opposite = one.known, other.known
             weaker = found.get(-end.sign)
             bound = None if weaker is None else self._carries(-weaker.alpha, end, opposite, near)
             bound = bound or self._found_near(near, end, opposite)[1]
+            bound = bound or self._solved(model, added, one)[1]
             if bound is None or bound.falls:
-                return None if bound is None else (bound,)
+                return (bound,)
             found[end.sign] = bound
         return found[1], found[-1]
 
@@ -318,6 +325,16 @@ class LocalAnalysis(ConeAnalysis):
         return Bound(alpha, proof, LOCAL) if proof.balances else None
 
 
+def _known(sign: int, extreme: Extreme) -> PrimalDual:
+    """Return what HiGHS has found of an end; a fall has no alpha."""
+    solution = extreme.solution
+    if extreme.status is LimitStatus.OPTIMAL:
+        columns, duals = solution.optimum
+        return PrimalDual(sign, extreme.alpha, columns[1:], -duals)
+    assert solution.duals is not None  # noqa: S101 - it is certified
+    return PrimalDual(sign, np.nan, np.empty(0), -solution.duals)
+
+
 class WarmBases(NamedTuple):
     """Where the two ends of the range of alpha are looked for from."""
 
@@ -331,11 +348,7 @@ class WarmBases(NamedTuple):
 
     def without(self, closed: NDArray[np.integer]) -> "WarmBases":
         """Return bases of a program without some edges of friction cones, by their numbers."""
-        if not len(closed):
-            return self
-        stay = np.ones(len(self.least.columns), bool)
-        stay[1 + closed] = False  # alpha comes first
-        return WarmBases(*(basis.with_columns(stay) for basis in self))
+        return WarmBases(*(basis.without(closed) for basis in self))
 
 
 @dataclass(frozen=True, eq=False)

@@ -141,8 +141,12 @@ class WarmBasis:
         more_rows = (_BASIC,) * (rows - len(self.rows))
         return WarmBasis(self.columns + more_columns, self.rows + more_rows, self.whole)
 
-    def with_columns(self, stay: NDArray[np.bool_]) -> "WarmBasis":
-        """Return the basis with some of the unknowns only."""
+    def without(self, closed: NDArray[np.integer]) -> "WarmBasis":
+        """Return the basis without some edges of friction cones, by their numbers."""
+        if not len(closed):
+            return self
+        stay = np.ones(len(self.columns), bool)
+        stay[1 + closed] = False  # alpha comes first
         both = list(zip(self.columns, stay.tolist(), strict=True))
         columns = tuple(status for status, stays in both if stays)
         whole = self.whole and all(stays or status != _BASIC for status, stays in both)
