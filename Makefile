@@ -6,6 +6,9 @@ PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-com
 KERNELS := $(shell grep -rl --include=*.py "import cython" src/drystone/kernels; find src/drystone/kernels -name "*.p[yx][xd]")
 SOURCES := pyproject.toml setup.py $(KERNELS)
 
+# Tests start many processes: Python compiles what they import once, whatever the machine has set.
+export PYTHONDONTWRITEBYTECODE :=
+
 .PHONY: demo test quick lint bench fuzz docs licences sbom lock clean
 
 demo: .venv/demo.stamp          ## plan a generated stone set and say where the picture is

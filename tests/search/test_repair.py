@@ -26,11 +26,18 @@ def wall(careless):
     return FoundWall.of(careless).judged(Yard.of(careless), THOROUGH)
 
 
-def test_stones_that_fall_in_rehearsals_are_taken_out_or_laid_elsewhere(careless, wall):
+@pytest.fixture(scope="module")
+def repaired(careless, wall):
+    """Its repairs of one turn, and how often the clock was looked at."""
+    clock = scenes.Ticks()
+    return list(repairs(careless, wall, Deadline(math.inf, clock), turns=1)), clock.count
+
+
+def test_stones_that_fall_in_rehearsals_are_taken_out_or_laid_elsewhere(careless, wall, repaired):
     # Stone 12 falls as it is laid, or when 2 is.
     assert wall.falls.first == Counter({12: 5, 4: 1})
     assert wall.falls.begins == Counter({2: 3, 12: 2, 4: 1})
-    (better,) = repairs(careless, wall, turns=1)
+    ((better,), _) = repaired
     often = Rehearsals(Yard.of(careless), 20, 99)
     share = often.falls(wall.build).share
     assert often.falls(better.build).share < 0.7 * share
@@ -56,18 +63,17 @@ def told(walls):
     return [(wall.merit, scenes.ids(wall)) for wall in walls]
 
 
-def test_processes_find_the_repairs_that_one_alone_finds(careless, wall):
-    alone = told(repairs(careless, wall, turns=1))
+def test_processes_find_the_repairs_that_one_alone_finds(careless, wall, repaired):
+    alone = told(repaired[0])
     assert alone[-1][0] > wall.merit
     with processes(2) as workers:
         assert told(repairs(careless, wall, turns=1, executor=workers)) == alone
 
 
-def test_what_was_repaired_before_time_is_up_stays(careless, wall):
-    clock = scenes.Ticks()
-    whole = told(repairs(careless, wall, Deadline(math.inf, clock), turns=1))
-    late = repairs(careless, wall, scenes.after_looks(clock.count + 5))
-    assert told([next(late)]) == whole
+def test_what_was_repaired_before_time_is_up_stays(careless, wall, repaired):
+    whole, looks = repaired
+    late = repairs(careless, wall, scenes.after_looks(looks + 5))
+    assert told([next(late)]) == told(whole)
     with pytest.raises(TimeIsUp):
         next(late)
     with pytest.raises(TimeIsUp):
