@@ -20,7 +20,7 @@ cdef class Heap(Body):
 cdef class MovingStone(Body):
     cdef p_double gaps, spans, rows, scratch
     cdef p_int near
-    cdef Py_ssize_t found, room, near_room, row_room
+    cdef Py_ssize_t found, room, near_room
 
 
 cdef Heap heap_of(object around, double width)

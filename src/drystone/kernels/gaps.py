@@ -100,16 +100,15 @@ class Heap(Body):
 class MovingStone(Body):
     """A polygon that moves, and the gaps that were found around it, seven numbers each.
 
-    It has room for numbers of edges that are near, and for the linear programs of its motions.
+    It has room for numbers of edges that are near, and for the linear programs of its motions,
+    in which each gap has two rows at most.
     """
 
     def __init__(self) -> None:
         self.room = self.near_room = 64
         self.gaps, self.near = new_doubles(7 * self.room), new_ints(self.near_room)
         self.spans = new_doubles(2 * self.near_room)
-        self.row_room = 32
-        self.rows = new_doubles(4 * self.row_room)
-        self.scratch = new_doubles(3 * (self.row_room + 2))
+        self.rows, self.scratch = new_doubles(8 * self.room), new_doubles(6 * self.room + 6)
 
     def __dealloc__(self) -> None:
         release(self.gaps)
@@ -191,8 +190,10 @@ def keep(stone, gap, nx, ny, x, y, away, other):
     """Add a gap to the list."""
     k: cython.Py_ssize_t = 7 * stone.found
     if stone.found == stone.room:
-        stone.gaps = more_doubles(stone.gaps, 2 * k)
         stone.room *= 2
+        stone.gaps = more_doubles(stone.gaps, 7 * stone.room)
+        stone.rows = more_doubles(stone.rows, 8 * stone.room)
+        stone.scratch = more_doubles(stone.scratch, 6 * stone.room + 6)
     stone.gaps[k], stone.gaps[k + 1], stone.gaps[k + 2] = gap, nx, ny
     stone.gaps[k + 3], stone.gaps[k + 4] = x, y
     stone.gaps[k + 5], stone.gaps[k + 6] = away, other

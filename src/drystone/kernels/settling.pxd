@@ -1,5 +1,5 @@
 from drystone.kernels.gaps cimport Heap, MovingStone, crosses, find_gaps, heap_of, measure, stone_of
-from drystone.kernels.memory cimport doubles, more_doubles, new_doubles, p_double, release
+from drystone.kernels.memory cimport doubles, new_doubles, p_double, release
 from drystone.kernels.seidel cimport solve2, solve3
 from libc.math cimport cos, isfinite, sin, sqrt
 
@@ -24,17 +24,16 @@ cdef int let_go(Way way, Heap heap, double x, double y, double turn) except -1
 cdef State state_of(Way way)
 cdef int look(State state, Way way, Heap heap) except -1 nogil
 cdef void exchange(State a, State b) noexcept nogil
-cdef double margin_of(Way way, State here) except -2.0 nogil
+cdef double margin_of(Way way, State here) noexcept nogil
 cdef int descend(Way way, Heap heap, State here, State there) except -1 nogil
 cdef int tried(
     Way way, Heap heap, State here, State there, double *move, double radius,
     double gained
 ) except -1 nogil
-cdef int best_move(State state, Way way, double radius, double *move) except -1 nogil
+cdef bint best_move(State state, Way way, double radius, double *move) noexcept nogil
 cdef double turning(State state, Py_ssize_t k, double nx, double ny) noexcept nogil
-cdef int enough_rows(MovingStone stone, Py_ssize_t count) except -1 nogil
 cdef double arm_of(const double *corners, Py_ssize_t count, double x, double y) noexcept nogil
 cdef double firmness(
     MovingStone stone, double x, double y, double arm, double mu, double tolerance,
     double steep
-) except -2.0 nogil
+) noexcept nogil

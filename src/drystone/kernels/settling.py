@@ -45,7 +45,7 @@ if not cython.compiled:
         measure,
         stone_of,
     )
-    from drystone.kernels.lists import doubles, more_doubles, new_doubles, release
+    from drystone.kernels.lists import doubles, new_doubles, release
     from drystone.kernels.seidel import solve2, solve3
 
 RESTS = cython.declare(cython.int, 0)
@@ -275,6 +275,8 @@ def exchange(a, b):
     a.corners, b.corners = b.corners, a.corners
     a.edges, b.edges = b.edges, a.edges
     a.gaps, b.gaps = b.gaps, a.gaps
+    a.rows, b.rows = b.rows, a.rows
+    a.scratch, b.scratch = b.scratch, a.scratch
     a.found, b.found = b.found, a.found
     a.room, b.room = b.room, a.room
     a.left, a.low, b.left, b.low = b.left, b.low, a.left, a.low
@@ -358,10 +360,8 @@ def best_move(state, way, radius, move):
     gain: cython.double[3] = [-way.lean, -1.0, 0.0]
     most: cython.double[3] = [radius, radius, radius if way.turns else 0.0]
     gaps: cython.p_double = state.gaps
-    rows: cython.p_double
+    rows: cython.p_double = state.rows
     reach: cython.double = SPREAD * radius + way.clearance
-    enough_rows(state, state.found + 2)
-    rows = state.rows
     for attempt in range(2):
         i, pivot = 0, -1
         for k in range(0, 7 * state.found, 7):
@@ -398,15 +398,6 @@ def turning(state, k, nx, ny):
     return (state.gaps[k + 3] - state.x) * ny - (state.gaps[k + 4] - state.y) * nx
 
 
-def enough_rows(stone, count):
-    """Make room for so many rows of a linear program."""
-    if count > stone.row_room:
-        stone.row_room = 2 * count
-        stone.rows = more_doubles(stone.rows, 4 * stone.row_room)
-        stone.scratch = more_doubles(stone.scratch, 3 * (stone.row_room + 2))
-    return 0
-
-
 def arm_of(corners, count, x, y):
     """Return the distance of the furthest corner from a point."""
     most: cython.double = 0.0
@@ -433,11 +424,9 @@ def firmness(stone, x, y, arm, mu, tolerance, steep):
     found: cython.double[3] = [0.0, 0.0, 0.0]
     least: cython.double = FIRMEST
     gaps: cython.p_double = stone.gaps
-    rows: cython.p_double
-    scratch: cython.p_double
+    rows: cython.p_double = stone.rows
+    scratch: cython.p_double = stone.scratch
     count: cython.Py_ssize_t = 0
-    enough_rows(stone, 2 * stone.found + 2)
-    rows, scratch = stone.rows, stone.scratch
     for k in range(0, 7 * stone.found, 7):
         if gaps[k + 5] > tolerance or gaps[k + 6] == END:
             continue
