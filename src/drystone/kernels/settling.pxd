@@ -1,5 +1,5 @@
 from drystone.kernels.gaps cimport Heap, MovingStone, crosses, find_gaps, heap_of, measure, stone_of
-from drystone.kernels.memory cimport doubles, new_doubles, p_double, release
+from drystone.kernels.memory cimport doubles, kept_doubles, p_double
 from drystone.kernels.seidel cimport solve2, solve3
 from libc.math cimport cos, isfinite, sin, sqrt
 
@@ -9,6 +9,7 @@ cdef class State(MovingStone):
 
 
 cdef class Way:
+    cdef list room
     cdef p_double corners, edges
     cdef State here, there
     cdef Py_ssize_t count, made

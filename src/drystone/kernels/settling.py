@@ -45,7 +45,7 @@ if not cython.compiled:
         measure,
         stone_of,
     )
-    from drystone.kernels.lists import doubles, new_doubles, release
+    from drystone.kernels.lists import doubles, kept_doubles
     from drystone.kernels.seidel import solve2, solve3
 
 RESTS = cython.declare(cython.int, 0)
@@ -142,10 +142,6 @@ class Way:
 class State(MovingStone):
     """A pose, and what is around the stone there; the turn in radians."""
 
-    def __dealloc__(self) -> None:
-        release(self.corners)
-        release(self.edges)
-
 
 def settle(
     outline: Points,
@@ -210,6 +206,7 @@ def way_of(outline, edges, rules):
         way.most_turn, way.most_shift, way.gain, way.overlap, way.steep, way.beyond, way.sticks,
         way.turns, way.steps,
     ) = rules  # fmt: skip
+    way.room = []
     way.here, way.there = state_of(way), state_of(way)
     return way
 
@@ -243,11 +240,11 @@ def let_go(way, heap, x, y, turn):
 
 
 def state_of(way):
-    """Return a state with memory of its own, nowhere yet."""
+    """Return a state, nowhere yet."""
     state: State = State()
     state.first, state.count = 0, way.count
-    state.corners = new_doubles(2 * way.count)
-    state.edges = new_doubles(3 * way.count)
+    state.corners = kept_doubles(way.room, 2 * way.count)
+    state.edges = kept_doubles(way.room, 3 * way.count)
     return state
 
 
