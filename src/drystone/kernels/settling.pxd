@@ -20,7 +20,6 @@ cdef class Way:
 
 
 cdef Way way_of(object outline, object edges, object rules)
-cdef object settling_of(Way way, int status)
 cdef int let_go(Way way, Heap heap, double x, double y, double turn) except -1
 cdef State state_of(Way way)
 cdef int look(State state, Way way, Heap heap) except -1 nogil

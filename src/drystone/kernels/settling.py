@@ -162,7 +162,9 @@ def settle(
     y: cython.double = pose[1]
     turn: cython.double = pose[2]
     heap.beyond = way.beyond
-    return settling_of(way, let_go(way, heap, x, y, turn))
+    status = Status(let_go(way, heap, x, y, turn))
+    here: State = way.here
+    return Settling(status, here.x, here.y, here.turn, here.least, way.margin, way.made)
 
 
 def rest_margin(
@@ -209,12 +211,6 @@ def way_of(outline, edges, rules):
     way.room = []
     way.here, way.there = state_of(way), state_of(way)
     return way
-
-
-def settling_of(way, status):
-    """Return where what was let go has come to."""
-    here: State = way.here
-    return Settling(Status(status), here.x, here.y, here.turn, here.least, way.margin, way.made)
 
 
 def let_go(way, heap, x, y, turn):
