@@ -1,4 +1,4 @@
-from drystone.kernels.gaps cimport Heap
+from drystone.kernels.gaps cimport Heap, measure
 from drystone.kernels.meetings cimport find_meetings
 from drystone.kernels.memory cimport (
     doubles, kept_doubles, kept_flags, kept_ints, move_doubles, move_ints, p_double, p_int, p_uchar

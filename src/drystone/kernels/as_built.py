@@ -28,7 +28,7 @@ except ImportError:
     from drystone.kernels import shim as cython
 
 if not cython.compiled:
-    from drystone.kernels.gaps import Heap
+    from drystone.kernels.gaps import Heap, measure
     from drystone.kernels.lists import (
         doubles,
         kept_doubles,
@@ -277,14 +277,10 @@ def add(wall, number, built):
     count: cython.Py_ssize_t = len(corners)
     move_doubles(wall.corners, 2 * first, doubles(corners), 0, 2 * count)
     move_doubles(wall.edges, 3 * first, doubles(edges), 0, 3 * count)
-    left: cython.double = wall.corners[2 * first]
-    low: cython.double = wall.corners[2 * first + 1]
-    right, high = left, low
-    for k in range(2 * first, 2 * (first + count), 2):
-        left, right = min(left, wall.corners[k]), max(right, wall.corners[k])
-        low, high = min(low, wall.corners[k + 1]), max(high, wall.corners[k + 1])
-    wall.boxes[4 * place], wall.boxes[4 * place + 1] = left, low
-    wall.boxes[4 * place + 2], wall.boxes[4 * place + 3] = right, high
+    wall.first, wall.count = first, count
+    measure(wall)
+    wall.boxes[4 * place], wall.boxes[4 * place + 1] = wall.left, wall.low
+    wall.boxes[4 * place + 2], wall.boxes[4 * place + 3] = wall.right, wall.high
     wall.starts[place + 1] = first + count
     wall.order[place], wall.places[number], wall.built[number] = number, place, built
     wall.size += 1

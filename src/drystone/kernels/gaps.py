@@ -138,9 +138,9 @@ def stone_of(corners, edges):
 
 def measure(body):
     """Fill in the box of a body."""
-    body.left = body.right = body.corners[0]
-    body.low = body.high = body.corners[1]
-    for i in range(1, body.count):
+    body.left = body.right = body.corners[2 * body.first]
+    body.low = body.high = body.corners[2 * body.first + 1]
+    for i in range(body.first + 1, body.first + body.count):
         x, y = body.corners[2 * i], body.corners[2 * i + 1]
         body.left = min(body.left, x)
         body.right = max(body.right, x)
