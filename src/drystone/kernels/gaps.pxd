@@ -1,5 +1,6 @@
 from drystone.kernels.memory cimport (
-    doubles, ints, more_doubles, more_ints, new_doubles, new_ints, p_double, p_int, release
+    doubles, ints, more_doubles, more_longs, new_doubles, new_longs, p_double, p_int, p_long,
+    release
 )
 from libc.math cimport sqrt
 
@@ -19,7 +20,7 @@ cdef class Heap(Body):
 
 cdef class MovingStone(Body):
     cdef p_double gaps, spans, rows, scratch
-    cdef p_int near
+    cdef p_long near
     cdef Py_ssize_t found, room, near_room
 
 

@@ -24,9 +24,9 @@ if not cython.compiled:
         doubles,
         ints,
         more_doubles,
-        more_ints,
+        more_longs,
         new_doubles,
-        new_ints,
+        new_longs,
         release,
     )
 
@@ -106,7 +106,7 @@ class MovingStone(Body):
 
     def __init__(self) -> None:
         self.room = self.near_room = 64
-        self.gaps, self.near = new_doubles(7 * self.room), new_ints(self.near_room)
+        self.gaps, self.near = new_doubles(7 * self.room), new_longs(self.near_room)
         self.spans = new_doubles(2 * self.near_room)
         self.rows, self.scratch = new_doubles(8 * self.room), new_doubles(6 * self.room + 6)
 
@@ -204,7 +204,7 @@ def keep(stone, gap, nx, ny, x, y, away, other):
 def room_for(stone, count):
     """Make room for the numbers of edges that are near, and from where to where they reach."""
     if count > stone.near_room:
-        stone.near = more_ints(stone.near, 2 * count)
+        stone.near = more_longs(stone.near, 2 * count)
         stone.spans = more_doubles(stone.spans, 4 * count)
         stone.near_room = 2 * count
     return 0

@@ -63,9 +63,9 @@ def move_ints(to: list[Any], at: int, source: list[Any], start: int, count: int)
 
 
 move_doubles = move_ints
-new_ints = new_longs = new_doubles
+new_longs = new_doubles
 kept_ints = kept_longs = kept_flags = kept_doubles
-more_ints = more_longs = more_doubles
+more_longs = more_doubles
 
 
 def sort_doubles(numbers: list[Any], count: int) -> None:

@@ -56,17 +56,11 @@ cdef inline unsigned char *flags_out(object array) except? NULL:
 cdef inline double *more_doubles(double *at, Py_ssize_t count) except? NULL nogil:
     return <double *>resized(at, count * sizeof(double))
 
-cdef inline int *more_ints(int *at, Py_ssize_t count) except? NULL nogil:
-    return <int *>resized(at, count * sizeof(int))
-
 cdef inline long long *more_longs(long long *at, Py_ssize_t count) except? NULL nogil:
     return <long long *>resized(at, count * sizeof(long long))
 
 cdef inline double *new_doubles(Py_ssize_t count) except? NULL nogil:
     return more_doubles(NULL, count)
-
-cdef inline int *new_ints(Py_ssize_t count) except? NULL nogil:
-    return more_ints(NULL, count)
 
 cdef inline long long *new_longs(Py_ssize_t count) except? NULL nogil:
     return more_longs(NULL, count)
