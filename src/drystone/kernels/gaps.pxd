@@ -22,6 +22,7 @@ cdef class MovingStone(Body):
     cdef p_double gaps, spans, rows, scratch
     cdef p_long near
     cdef Py_ssize_t found, room, near_room
+    cdef double x, y
 
 
 cdef Heap heap_of(object around, double width)

@@ -98,7 +98,7 @@ class Heap(Body):
 
 @cython.cclass
 class MovingStone(Body):
-    """A polygon that moves, and the gaps that were found around it, seven numbers each.
+    """A polygon with its centroid that moves, and the gaps around it, seven numbers each.
 
     It has room for numbers of edges that are near, and for the linear programs of its motions,
     in which each gap has two rows at most.

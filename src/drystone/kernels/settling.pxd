@@ -5,7 +5,7 @@ from libc.math cimport cos, isfinite, sin, sqrt
 
 
 cdef class State(MovingStone):
-    cdef double x, y, turn, least
+    cdef double turn, least
 
 
 cdef class Way:
@@ -31,9 +31,8 @@ cdef int tried(
     double gained
 ) except -1 nogil
 cdef bint best_move(State state, Way way, double radius, double *move) noexcept nogil
-cdef double turning(State state, Py_ssize_t k, double nx, double ny) noexcept nogil
+cdef double turning(MovingStone stone, Py_ssize_t k, double nx, double ny) noexcept nogil
 cdef double arm_of(const double *corners, Py_ssize_t count, double x, double y) noexcept nogil
 cdef double firmness(
-    MovingStone stone, double x, double y, double arm, double mu, double tolerance,
-    double steep
+    MovingStone stone, double arm, double mu, double tolerance, double steep
 ) noexcept nogil

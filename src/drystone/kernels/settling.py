@@ -184,11 +184,10 @@ def rest_margin(
     require_friction(mu)
     corners = np.ascontiguousarray(corners, np.float64)
     stone: MovingStone = stone_of(corners, polygon_edges(corners))
-    x: cython.double = centroid[0]
-    y: cython.double = centroid[1]
+    stone.x, stone.y = centroid
     find_gaps(stone, heap_of(around, width), tolerance, CORNER)
-    arm: cython.double = arm_of(doubles(corners), stone.count, x, y)
-    return firmness(stone, x, y, arm, mu, tolerance, steep)
+    arm: cython.double = arm_of(stone.corners, stone.count, stone.x, stone.y)
+    return firmness(stone, arm, mu, tolerance, steep)
 
 
 def require_friction(mu: float) -> None:
@@ -280,7 +279,7 @@ def exchange(a, b):
 
 def margin_of(way, here):
     """Return how firmly a stone rests."""
-    return firmness(here, here.x, here.y, way.arm, way.mu, way.tolerance, way.steep)
+    return firmness(here, way.arm, way.mu, way.tolerance, way.steep)
 
 
 def descend(way, heap, here, there):
@@ -386,9 +385,9 @@ def best_move(state, way, radius, move):
     return False
 
 
-def turning(state, k, nx, ny):
+def turning(stone, k, nx, ny):
     """Return how fast a turn about the centroid moves the point of a gap along a direction."""
-    return (state.gaps[k + 3] - state.x) * ny - (state.gaps[k + 4] - state.y) * nx
+    return (stone.gaps[k + 3] - stone.x) * ny - (stone.gaps[k + 4] - stone.y) * nx
 
 
 def arm_of(corners, count, x, y):
@@ -403,7 +402,7 @@ def arm_of(corners, count, x, y):
     return sqrt(most)
 
 
-def firmness(stone, x, y, arm, mu, tolerance, steep):
+def firmness(stone, arm, mu, tolerance, steep):
     """Return how far gravity may lean, over mu, until a stone moves; -1 when it does not rest.
 
     Gaps that touch count, but the ends of the wall carry nothing.  Turns are ways of a corner as
@@ -431,7 +430,7 @@ def firmness(stone, x, y, arm, mu, tolerance, steep):
             gy = gaps[k + 2] - sign * grip * gaps[k + 1]
             i = 4 * count
             rows[i], rows[i + 1], rows[i + 3] = -gx, -gy, 0.0
-            rows[i + 2] = -((gaps[k + 3] - x) * gy - (gaps[k + 4] - y) * gx) / arm
+            rows[i + 2] = -turning(stone, k, gx, gy) / arm
             count += 1
     if count < 4:
         return -1.0
