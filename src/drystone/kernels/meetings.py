@@ -87,9 +87,6 @@ class Meetings(NamedTuple):
     points: Points
     normals: Points  # (k, 2) unit vectors into the polygon
 
-    def __len__(self) -> int:
-        return len(self.others)
-
 
 def meetings(corners: Points, around: Polygons, tolerance: float, setback: float = 0.0) -> Meetings:
     """Find all contacts of one placed polygon with others and with the ground, y = 0.
