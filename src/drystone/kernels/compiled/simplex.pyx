@@ -172,24 +172,19 @@ cdef void clear_basic(State *state, double *values) noexcept nogil:
         values[state.closed[i]] = 0.0
 
 
-cdef Columns *part_of(State *state, Py_ssize_t *number) noexcept nogil:
-    if number[0] < state.old.count:
-        return &state.old
-    number[0] -= state.old.count
-    return &state.new
-
-
 cdef Py_ssize_t entries_of(
     State *state, Py_ssize_t variable, Py_ssize_t *rows, double *entries
 ) noexcept nogil:
     """Write the rows and entries, up to six, of any variable but alpha; return how many."""
     cdef Py_ssize_t q, row, count = 0, number = variable
-    cdef Columns *part
+    cdef Columns *part = &state.old
     if variable <= ARTIFICIAL:
         rows[0] = ARTIFICIAL - variable
         entries[0] = 1.0
         return 1
-    part = part_of(state, &number)
+    if number >= part.count:
+        number -= part.count
+        part = &state.new
     for q in range(6):
         row = (part.first[number] + q if q < 3 else part.second[number] + q - 3) - 3
         if row >= 0:
@@ -623,30 +618,24 @@ cdef bint compute_basic_values(State *state) noexcept nogil:
 
 cdef double compute_residual(State *state) noexcept nogil:
     """Compute rhs minus basis times basic values; return the largest."""
-    cdef Py_ssize_t i, q, number
-    cdef double value, largest = 0.0
-    cdef double *total = state.with_ground
-    cdef Columns *part
-    memset(total, 0, (state.size + 3) * sizeof(double))
+    cdef Py_ssize_t[6] rows
+    cdef double[6] entries
+    cdef Py_ssize_t i, q, count
+    cdef double alpha = state.values[state.alpha_row], largest = 0.0
+    cdef double *total = state.residual
+    memset(total, 0, state.size * sizeof(double))
     for i in range(state.size):
         if state.basic[i] >= 0:
-            number = state.basic[i]
-            value = state.values[i]
-            part = part_of(state, &number)
-            for q in range(3):
-                total[part.first[number] + q] += part.entries[q * part.count + number] * value
-            for q in range(3):
-                total[part.second[number] + q] += (
-                    part.entries[(3 + q) * part.count + number] * value
-                )
-    value = state.values[state.alpha_row]
+            count = entries_of(state, state.basic[i], rows, entries)
+            for q in range(count):
+                total[rows[q]] += entries[q] * state.values[i]
     for i in range(state.size):
-        total[3 + i] = state.live[i] * value + total[3 + i]
+        total[i] = state.live[i] * alpha + total[i]
     for i in range(state.size):
         if state.basic[i] <= ARTIFICIAL:
-            total[3 + ARTIFICIAL - state.basic[i]] += state.values[i]
+            total[ARTIFICIAL - state.basic[i]] += state.values[i]
     for i in range(state.size):
-        state.residual[i] = state.rhs[i] - total[3 + i]
+        state.residual[i] = state.rhs[i] - total[i]
         largest = max(largest, fabs(state.residual[i]))
     return largest
 
@@ -763,7 +752,7 @@ cdef int solve_small(
     The tableau has a line for each row: columns, room for artificial variables, right-hand side;
     then one for the costs of phase 1, and one for those of phase 2.  Lines are `count + rows + 1`
     long.  To be filled in are columns, right-hand side and costs of phase 2; the last line ends as
-    the reduced costs.  `lift` is scratch for `count` numbers; `ray` may be the same.
+    the reduced costs.  `lift` is scratch for `count` numbers.
     """
     cdef Py_ssize_t i, j, width = count + rows + 1
     cdef double *line
@@ -786,15 +775,12 @@ cdef int solve_small(
         for j in range(width):
             line[j] *= flip
         line[count + i] = 1.0
-        basic[i] = <int>(count if flip > 0.0 else -1)
+        ray[i], basic[i] = flip, <int>count
     for i in range(rows):
         line = tableau + i * width
         for j in range(count):
             phase1[j] -= line[j]
         phase1[width - 1] -= line[width - 1]
-    for i in range(rows):
-        ray[i] = 1.0 if basic[i] >= 0 else -1.0
-        basic[i] = <int>count
     for j in range(count, width):
         phase1[width + j] = 0.0
     status = two_phases(tableau, rows, count, basic)
