@@ -524,16 +524,3 @@ def test_where_nothing_is_gained_nothing_moves():
     for sign in (1.0, -1.0):
         both = np.array([[0.0, -1.0, 0.0, 1.0], [-sign, 0.0, 0.0, -2.0], [0.0, 0.0, -sign, -1.0]])
         assert solve(both, down, most) == pytest.approx((2.0 * sign, -1.0, sign), abs=1e-12)
-
-
-def test_rows_without_coefficients_only_say_whether_there_is_a_solution():
-    gain, most = np.array([1.0, 1.0, 1.0]), np.ones(3)
-    assert solve(np.array([[0.0, 0.0, 0.0, 0.0]]), gain, most) == (1.0, 1.0, 1.0)
-    assert solve(np.array([[0.0, 0.0, 0.0, -1.0]]), gain, most) is None
-
-
-def test_arrays_of_other_shapes_are_refused():
-    with pytest.raises(ValueError, match="three numbers"):
-        solve(np.zeros((2, 3)), np.zeros(3), np.zeros(3))
-    with pytest.raises(ValueError, match="three numbers"):
-        solve(np.zeros((2, 4)), np.zeros(2), np.zeros(3))

@@ -49,8 +49,6 @@ def cone_edges(
     then those of the second, 0 for the ground.  The edges normal + mu tangent and normal - mu
     tangent of a point follow each other; the tangent of a normal (x, y) is (y, -x).
     """
-    if not len(bodies) == len(normals) == len(frictions) == len(points):
-        raise ValueError("lists that tell of different interfaces")
     counts = list(map(len, points))
     at = np.concatenate(points, dtype=np.float64) if points else np.empty((0, 2))
     if at.shape[1] != 2:

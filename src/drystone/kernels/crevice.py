@@ -79,7 +79,7 @@ def between(space: Crevice, x_left: float, x_right: float) -> Points | None:
     x, low, high = slabs(space, x_left, x_right)
     # Both sides of a step count together: halves that meet in a point are not one simple polygon.
     over = np.minimum(high[:-1, 1], high[1:, 0]) - np.maximum(low[:-1, 1], low[1:, 0])
-    if not len(low) or (high <= low).any() or (over <= 0.0).any():
+    if (high <= low).any() or (over <= 0.0).any():
         return None
     inside = (x[0] + SAME, x[-1] - SAME)
     ends = np.array([[x[0], low[0, 0], high[0, 0]], [x[-1], low[-1, 1], high[-1, 1]]])

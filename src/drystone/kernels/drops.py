@@ -127,7 +127,6 @@ def drops(
     for at in range(size):
         if number[3 * at] > 0:
             widest = max(widest, first[at + 1] - first[at])
-    room = max(1, columns)
     tops = np.ascontiguousarray(profile.tops)
     boxes = np.ascontiguousarray(shown(profile))
     rest_width = np.ascontiguousarray(terms.rest_width_px)
@@ -141,9 +140,9 @@ def drops(
     order: cython.p_longlong = longs(order_of)
     constant: cython.p_double = doubles(constants)
     extents: cython.p_double = doubles(stones.boxes)
-    space = np.empty((3 + widest, room))
-    more_space, stages = np.empty(room, np.int64), np.empty(room, np.uint8)
-    costs, groups = np.empty(max(1, few)), np.empty(max(1, few), np.int64)
+    space = np.empty((3 + widest, columns))
+    more_space, stages = np.empty(columns, np.int64), np.empty(columns, np.uint8)
+    costs, groups = np.empty(few), np.empty(few, np.int64)
     wall: DropWall = DropWall()
     wall.tops, wall.columns = doubles(tops), columns
     wall.boxes, wall.shown = doubles(boxes), len(boxes)

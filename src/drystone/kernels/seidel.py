@@ -32,16 +32,12 @@ STEP = cython.declare(cython.ulonglong, 1442695040888963407)
 def solve(
     rows: NDArray[np.float64], gain: NDArray[np.float64], most: NDArray[np.float64]
 ) -> tuple[float, float, float] | None:
-    """Maximise a gain; None when nothing fulfils all rows.
+    """Maximise a gain; None when nothing fulfils all rows.  Kernels ask :func:`solve3`.
 
     Rows (n, 4) are coefficients, about 1 in size, and what their sum may be at most.  A gain below
     1e-12 counts as none, and the smallest value is taken.  `most` are the largest absolute values.
     """
-    if rows.ndim != 2 or rows.shape[1] != 4 or len(gain) != 3 or len(most) != 3:
-        raise ValueError("rows are (n, 4), gain and most have three numbers")
-    shuffled = np.array(rows, np.float64, order="C")
-    scratch = np.empty(3 * len(rows) + 6)
-    gain, most = np.ascontiguousarray(gain), np.ascontiguousarray(most)
+    shuffled, scratch = np.array(rows), np.empty(3 * len(rows) + 6)
     x: cython.double[3] = [0.0, 0.0, 0.0]
     found: cython.bint = solve3(
         doubles(shuffled), len(rows), doubles(gain), doubles(most), doubles(scratch), x
@@ -52,8 +48,8 @@ def solve(
 def solve3(rows, count, gain, most, scratch, x):
     """Maximise gain . x over rows (a, b) with a . x <= b, and |x| <= most.
 
-    The rows, of four numbers, are shuffled; the scratch has room for three numbers of each and
-    six more.
+    The rows, of four numbers, are shuffled; each has a coefficient that is not near 0.  The scratch
+    has room for three numbers of each and six more.
     """
     state: cython.ulonglong = 88172645463325252
     gain2: cython.double[2] = [0.0, 0.0]
@@ -79,10 +75,6 @@ def solve3(rows, count, gain, most, scratch, x):
         for j in range(1, 3):
             if abs(rows[k + j]) > abs(rows[k + e]):
                 e = j
-        if abs(rows[k + e]) < FLAT:
-            if rows[k + 3] < -EMPTY:
-                return False
-            continue
         f, g = (e + 1) % 3, (e + 2) % 3
         kf, kg = -rows[k + f] / rows[k + e], -rows[k + g] / rows[k + e]
         b0 = rows[k + 3] / rows[k + e]
