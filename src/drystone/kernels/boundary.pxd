@@ -1,5 +1,5 @@
 from drystone.kernels.memory cimport (
-    flags, kept_flags, kept_ints, kept_longs, longs, longs_out, p_int, sort_rows
+    flags, kept_flags, kept_ints, longs, longs_out, p_int
 )
 
 
@@ -14,7 +14,7 @@ cdef class BoundaryWork:
     cdef bint all_fresh
 
 
-cdef object told(BoundaryWork w)
+cdef object told(BoundaryWork w, object rows)
 cdef void mark_nodes(BoundaryWork w) noexcept nogil
 cdef bint is_fresh(BoundaryWork w, Py_ssize_t one, Py_ssize_t other) noexcept nogil
 cdef void list_edges(BoundaryWork w) noexcept nogil

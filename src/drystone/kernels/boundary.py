@@ -21,15 +21,7 @@ except ImportError:
     from drystone.kernels import shim as cython
 
 if not cython.compiled:
-    from drystone.kernels.lists import (
-        flags,
-        kept_flags,
-        kept_ints,
-        kept_longs,
-        longs,
-        longs_out,
-        sort_rows,
-    )
+    from drystone.kernels.lists import flags, kept_flags, kept_ints, longs, longs_out
 
 Cells = NDArray[np.int64]
 Nodes = NDArray[np.int64]
@@ -90,15 +82,15 @@ def boundary_of(cells: Cells, fresh: Mask | None = None) -> Boundary:
     w.path = kept_ints(w.room, 2 * w.edge_count)
     list_edges(w)
     starts: cython.int = put_starts_first(w)
-    w.chains = kept_longs(w.room, 6 * (starts + w.edge_count // 4))
+    rows = np.empty((starts + w.edge_count // 4, 6), np.int64)
+    w.chains = longs_out(rows)
     with cython.nogil:
         for k in range(starts):
             follow_chain(w, w.edges[k])
         for k in range(starts, w.edge_count):
             if is_followed(w, w.edges[k]):  # and no chain came here yet: a closed one
                 follow_chain(w, lowest_of_leftmost(w, w.edges[k]))
-        sort_rows(w.chains, w.chain_count)
-    return told(w)
+    return told(w, rows[: w.chain_count])
 
 
 @cython.cclass
@@ -106,8 +98,10 @@ class BoundaryWork:
     """Cells, marks of their nodes, and what is found; of chains labels, -row, col, begin, end."""
 
 
-def told(w):
-    """Write what was found into arrays."""
+def told(w, rows):
+    """Write what was found into arrays, with the rows of chains in order."""
+    rows = rows[np.lexsort(rows.T[::-1])]
+    w.chains = longs(rows)
     labels, begins = np.empty((w.chain_count, 2), np.int64), np.zeros(w.chain_count + 1, np.int64)
     nodes, corners = np.empty((w.path_count, 2), np.int64), np.empty((w.corner_count, 4), np.int64)
     pairs: cython.p_longlong = longs_out(labels)

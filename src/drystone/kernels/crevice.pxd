@@ -1,5 +1,5 @@
 from drystone.kernels.memory cimport (
-    doubles, doubles_out, ints, kept_doubles, kept_ints, p_double, p_int, sort_doubles
+    doubles, doubles_out, ints, kept_doubles, kept_ints, p_double, p_int
 )
 from libc.math cimport sqrt
 
@@ -12,6 +12,7 @@ cdef class Rows:
 
 cdef class Slabs:
     cdef list room
+    cdef object begins
     cdef p_double x, middle, ceiling, best
     cdef p_int which
     cdef Py_ssize_t count
@@ -29,4 +30,4 @@ cdef object moved(Rows chain, double clearance, Rows out)
 cdef void direction(double *at, Py_ssize_t k, double *out) noexcept
 cdef void highest(Rows edges, Slabs cuts) noexcept
 cdef Rows chained(Rows picked, Slabs cuts)
-cdef void slice_up(Slabs cuts, Py_ssize_t count, double left, double right) noexcept
+cdef object slice_up(Slabs cuts, Py_ssize_t count, double left, double right)

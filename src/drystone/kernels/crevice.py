@@ -21,14 +21,7 @@ except ImportError:
 if not cython.compiled:
     from math import sqrt
 
-    from drystone.kernels.lists import (
-        doubles,
-        doubles_out,
-        ints,
-        kept_doubles,
-        kept_ints,
-        sort_doubles,
-    )
+    from drystone.kernels.lists import doubles, doubles_out, ints, kept_doubles, kept_ints
 
 Chain = Points
 
@@ -140,8 +133,8 @@ class Slabs:
     """Strips between upright lines, and which segment is taken in each: -1 for none."""
 
     def __init__(self, room: int) -> None:
-        self.room, self.count = [], 0
-        self.x, self.middle = kept_doubles(self.room, room), kept_doubles(self.room, room)
+        self.room, self.count, self.begins = [], 0, np.empty(room)
+        self.x, self.middle = doubles_out(self.begins), kept_doubles(self.room, room)
         self.ceiling, self.best = kept_doubles(self.room, room), kept_doubles(self.room, room)
         self.which = kept_ints(self.room, room)
 
@@ -396,7 +389,7 @@ def slice_up(cuts, count, left, right):
         if x[i] > left + NEAR and x[i] < right - NEAR:
             x[inside] = x[i]
             inside += 1
-    sort_doubles(x, inside)
+    cuts.begins[:inside].sort()
     for i in range(inside):
         value = x[i]
         if i == 0 or value - last > NEAR:

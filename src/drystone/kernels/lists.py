@@ -64,19 +64,8 @@ def move_ints(to: list[Any], at: int, source: list[Any], start: int, count: int)
 
 move_doubles = move_ints
 new_longs = new_doubles
-kept_ints = kept_longs = kept_flags = kept_doubles
+kept_ints = kept_flags = kept_doubles
 more_longs = more_doubles
-
-
-def sort_doubles(numbers: list[Any], count: int) -> None:
-    """Put the first numbers in order."""
-    numbers[:count] = sorted(numbers[:count])
-
-
-def sort_rows(numbers: list[Any], count: int) -> None:
-    """Put the first rows of six numbers in order."""
-    rows = sorted(zip(*[iter(numbers[: 6 * count])] * 6, strict=True))
-    numbers[: 6 * count] = [number for row in rows for number in row]
 
 
 def release(_numbers: list[Any]) -> None:

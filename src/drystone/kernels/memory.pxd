@@ -16,8 +16,6 @@ ctypedef unsigned char *p_uchar
 cdef void *start(object array, const char *kinds, Py_ssize_t size, int access) except? NULL
 cdef void *resized(void *at, Py_ssize_t size) except? NULL nogil
 cdef char *kept(list room, Py_ssize_t size)
-cdef void sort_doubles(double *at, Py_ssize_t count) noexcept nogil
-cdef void sort_rows(long long *at, Py_ssize_t count) noexcept nogil
 
 cdef inline double *doubles(object array) except? NULL:
     return <double *>start(array, b"d", 8, PyBUF_C_CONTIGUOUS)

@@ -3,7 +3,7 @@
 
 from cpython.buffer cimport PyBUF_FORMAT, PyBuffer_Release, PyObject_GetBuffer
 from cpython.bytearray cimport PyByteArray_AS_STRING
-from libc.stdlib cimport qsort, realloc
+from libc.stdlib cimport realloc
 
 
 cdef void *start(object array, const char *kinds, Py_ssize_t size, int access) except? NULL:
@@ -35,27 +35,3 @@ cdef char *kept(list room, Py_ssize_t size):
     zeros = bytearray(size)
     room.append(zeros)
     return PyByteArray_AS_STRING(zeros)
-
-
-cdef void sort_doubles(double *at, Py_ssize_t count) noexcept nogil:
-    qsort(at, count, sizeof(double), compared)
-
-
-cdef int compared(const void *one, const void *two) noexcept nogil:
-    cdef double a = (<const double *>one)[0], b = (<const double *>two)[0]
-    return (a > b) - (a < b)
-
-
-cdef void sort_rows(long long *at, Py_ssize_t count) noexcept nogil:
-    """Sort rows of six numbers by the first one, then by the next one, ..."""
-    qsort(at, count, 6 * sizeof(long long), compared_rows)
-
-
-cdef int compared_rows(const void *one, const void *two) noexcept nogil:
-    cdef const long long *a = <const long long *>one
-    cdef const long long *b = <const long long *>two
-    cdef int i
-    for i in range(6):
-        if a[i] != b[i]:
-            return 1 if a[i] > b[i] else -1
-    return 0
