@@ -102,16 +102,14 @@ def told(w, rows):
     """Write what was found into arrays, with the rows of chains in order."""
     rows = rows[np.lexsort(rows.T[::-1])]
     w.chains = longs(rows)
-    labels, begins = np.empty((w.chain_count, 2), np.int64), np.zeros(w.chain_count + 1, np.int64)
+    labels, begins = rows[:, :2].copy(), np.zeros(w.chain_count + 1, np.int64)
     nodes, corners = np.empty((w.path_count, 2), np.int64), np.empty((w.corner_count, 4), np.int64)
-    pairs: cython.p_longlong = longs_out(labels)
     begin: cython.p_longlong = longs_out(begins)
     places: cython.p_longlong = longs_out(nodes)
     crossings: cython.p_longlong = longs_out(corners)
     at: cython.int = 0
     with cython.nogil:
         for k in range(w.chain_count):
-            pairs[2 * k], pairs[2 * k + 1] = w.chains[6 * k], w.chains[6 * k + 1]
             for n in range(w.chains[6 * k + 4], w.chains[6 * k + 5]):
                 places[2 * at] = w.path[n] // w.stride
                 places[2 * at + 1] = w.path[n] % w.stride
