@@ -243,6 +243,10 @@ def test_margins_are_those_of_statics():
     # Held by a stone on either side it can only rise.
     assert margin(slab, 50.0, 5.0, [at(cube, 24.95, 5.0), at(cube, 75.05, 5.0)]) > 1.0
     assert margin(slab, 50.0, 5.2) == -1.0
+    # Any number of corners may stand between those that bear.
+    many = np.vstack([slab[:3], [(20.0 - k / 3.0, 5.0) for k in range(1, 120)], slab[3:]])
+    piers = [at(cube, x, 5.0) for x in (40.0, 60.0)]
+    assert margin(many, 50.0, 15.05, piers) == margin(slab, 50.0, 15.05, piers) > 0.0
     # Corners that pass each other carry nothing although faces would part them.
     low = [at(cube, 24.8, 5.0), at(cube, 74.0, 5.0)]
     assert margin(slab, 50.0, 15.05, low) == -1.0

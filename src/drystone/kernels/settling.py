@@ -183,7 +183,8 @@ def rest_margin(
     """
     require_friction(mu)
     corners = np.ascontiguousarray(corners, np.float64)
-    stone: MovingStone = stone_of(corners, polygon_edges(corners))
+    edges = polygon_edges(corners)
+    stone: MovingStone = stone_of(corners, edges)
     stone.x, stone.y = centroid
     find_gaps(stone, heap_of(around, width), tolerance, CORNER)
     arm: cython.double = arm_of(stone.corners, stone.count, stone.x, stone.y)
