@@ -61,11 +61,25 @@ def extensions() -> list[Extension]:
     ]
 
 
+def is_up_to_date(made: Path, extension: Extension) -> bool:
+    """Say whether a kernel is newer than all that it is made from."""
+    needed = (Path(name) for name in [__file__, *extension.sources, *extension.depends])
+    last = max(path.stat().st_mtime for path in needed)
+    return made.exists() and made.stat().st_mtime > last
+
+
 class BuildKernels(build_ext):
     """Compile all kernels, or none; Cython is not even asked where there is no compiler."""
 
     def run(self) -> None:
-        """Build, and go on without compiled kernels where that fails."""
+        """Build, and go on without compiled kernels where that fails.
+
+        An editable installation keeps what `build_ext --inplace` has made of these very sources.
+        """
+        made = [SOURCE / self.get_ext_filename(extension.name) for extension in self.extensions]
+        if self.editable_mode and all(map(is_up_to_date, made, self.extensions)):
+            self.extensions = []
+            return
         try:
             super().run()
         except Exception as error:

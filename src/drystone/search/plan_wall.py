@@ -176,7 +176,7 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
     >>> import drystone as ds
     >>> bricks = ds.generate.BrickSettings(count=6, height_px=10, aspect=2)
     >>> stones = ds.generate.brick_stones(bricks, np.random.default_rng(1))
-    >>> result = ds.plan_wall(stones, 60, 20, scale=1.0)
+    >>> result = ds.plan_wall(stones, 60, 20, scale=1.0, budget=4)
     >>> result.success, len(result.plan.steps)
     (True, 6)
     """
