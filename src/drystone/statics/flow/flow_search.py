@@ -15,11 +15,12 @@ The method stands in :mod:`drystone.statics.flow.nonassociative`.
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Literal
 
 import highspy
 import numpy as np
-from scipy.sparse import csc_array, vstack
+from scipy.sparse import csc_array, csr_array, vstack
 
 from drystone.statics.flow.central_path import CentralPath
 from drystone.statics.lp.highs import INFINITY, HighsSession, loaded, solved
@@ -102,14 +103,26 @@ class FlowState:
 class ContactRates:
     """Relative velocities at the contact points as linear functions of the velocities of blocks."""
 
-    normal: csc_array  # (rows, m): its transpose times a velocity is the rate of opening u_n
-    slip: csc_array  # (rows, m): its transpose times a velocity is r = mu u_t
+    normal: csc_array  # (rows, m)
+    slip: csc_array  # (rows, m)
 
     @classmethod
     def of(cls, program: EquilibriumProgram) -> "ContactRates":
         """Take them from the columns of a program."""
         first, second = program.matrix[:, 1::2], program.matrix[:, 2::2]
         return cls(csc_array(first + second) / 2.0, csc_array(first - second) / 2.0)
+
+    @cached_property
+    def _transposed(self) -> tuple[csr_array, csr_array]:
+        return self.normal.T, self.slip.T
+
+    def opening(self, velocity: Floats) -> Floats:
+        """Return u_n (m,) of a motion."""
+        return np.asarray(self._transposed[0] @ velocity)
+
+    def sliding(self, velocity: Floats) -> Floats:
+        """Return r = mu u_t (m,) of a motion."""
+        return np.asarray(self._transposed[1] @ velocity)
 
 
 class MotionsOfForces:
@@ -156,8 +169,8 @@ class MotionsOfForces:
         least[points:-1][bears[:, 1]] = 0.0
         costs = np.zeros(self._columns)
         if wanted is not None and last is not None:
-            opens = self._rates.normal.T @ last > NOTHING * float(np.abs(last).max())
-            way = np.where(opens, 0.0, np.sign(self._rates.slip.T @ last))
+            opens = self._rates.opening(last) > NOTHING * float(np.abs(last).max())
+            way = np.where(opens, 0.0, np.sign(self._rates.sliding(last)))
             share = wanted.sum(axis=1)
             least[points:-1][(share > 0) & (way > 0)] = 0.0
             greatest[points:-1][(share > 0) & (way < 0)] = 0.0
@@ -209,7 +222,7 @@ class Search:
         # Without an associative mechanism, where no load is too great for one, all slip alike.
         mechanism = np.ones(len(self._upright))
         if first is not None:
-            mechanism = np.abs(self._rates.slip.T @ first.velocity)
+            mechanism = np.abs(self._rates.sliding(first.velocity))
         settings, points = self._settings, len(mechanism)
         rng = np.random.default_rng(settings.seed)
         more = (Start(f"random {i + 1}", "random", 30.0) for i in range(settings.random_starts))
@@ -235,7 +248,7 @@ class Search:
         for closing in self._settings.paths:
             motion = path.motion(closing, self._look)
             if motion is not None:
-                slip = np.abs(self._rates.slip.T @ motion)
+                slip = np.abs(self._rates.sliding(motion))
                 rounds, state = self._rounds(slip, CLOSING_ROUNDS)
                 yield f"central path, closing {closing:g}", rounds, state and self._descended(state)
 
@@ -261,7 +274,7 @@ class Search:
             velocity = self.motions.find(state.edges)
             if velocity is not None:
                 return number, FlowState(state.alpha, state.edges, velocity)
-            way = np.abs(self._rates.slip.T @ state.velocity) - rates
+            way = np.abs(self._rates.sliding(state.velocity)) - rates
             if number % BETWEEN:
                 rates = rates + (SHORTEST + number * GOLDEN % 1.0) * way
             else:
@@ -283,8 +296,8 @@ class Search:
         comes how much alpha would fall for a unit of force on each edge (m, 2) ruled out so.
         """
         fastest = float(np.abs(velocity).max())
-        opens = self._rates.normal.T @ velocity > NOTHING * fastest
-        slip = self._rates.slip.T @ velocity
+        opens = self._rates.opening(velocity) > NOTHING * fastest
+        slip = self._rates.sliding(velocity)
         barred = np.column_stack(
             (opens | (slip > NOTHING * fastest), opens | (slip < -NOTHING * fastest))
         ).ravel()
@@ -297,7 +310,7 @@ class Search:
         state = _state(found, self._sign, velocity)
         if state is None:
             return None
-        gain = found.duals @ self._program.matrix[:, 1:]
+        gain = (found.duals @ self._program.matrix)[1:]
         return state, np.where(barred & (gain > NOTHING), gain, 0.0).reshape(-1, 2)
 
     def _descended(self, state: FlowState) -> FlowState:

@@ -86,7 +86,7 @@ def fall_of(
         look()
         if found is None or dead @ found[0] < AT_REST:
             return None
-        slip = np.abs(rates.slip.T @ found[0])
+        slip = np.abs(rates.sliding(found[0]))
         found = least_constraint(rows, dead, edges, -np.repeat(slip, 2))
         fall = None if found is None else states.exact(*found)
         if fall is not None and np.abs(fall.inertia).max() > UNBALANCED:
@@ -144,7 +144,7 @@ class _States:
         rows = len(self._masses)
         forces = multipliers.reshape(-1, 2).sum(axis=1)
         presses = forces > CLEAR * max(1.0, float(forces.max()))
-        slip = self._rates.slip.T @ acceleration
+        slip = self._rates.sliding(acceleration)
         clear = CLEAR * float(np.abs(acceleration).max())
         forth, back = slip > clear, slip < -clear
         none = np.column_stack((~presses | forth, ~presses | back)).ravel()
