@@ -32,5 +32,5 @@ class Sizes:
 SIZES = {
     "full": Sizes(("small", "medium", "large"), (10, 30, 60), repeats=3, traced=("paper", "best")),
     "quick": Sizes(("small",), (10, 30), steps=12),
-    "smoke": Sizes(("small",), (5,), generated=8, steps=2, walls=1),
+    "smoke": Sizes(("small",), (5,), generated=6, steps=1, walls=1),
 }
