@@ -21,7 +21,7 @@ from tests.lab.reproduce.small_walls import of, on, outcome, rows
 
 SEEDS = (1, 2)
 RUBBLE = Target(
-    "rubble", generated("rubble", 5, count=9, width_px=100, height_px=40, courses=3), 100, 40, 1.0
+    "rubble", generated("rubble", 5, count=6, width_px=80, height_px=30, courses=2), 80, 30, 1.0
 )
 SHARP = replace(RUBBLE, name="sharp", source=replace(RUBBLE.source, seed=8), number=5)
 
@@ -113,7 +113,7 @@ def test_stabilisation(made, here):
     assert list(table) == ["both", "rotation", "wedge", "none"]
     assert table["rotation"]["wedges median"] == table["none"]["wedges median"] == 0
     wedged = _outcomes(here, ("stabilise.method", "wedge"))
-    shares = [100 * area / (100 * 40) for area in _values(wedged, "wedge_area")]
+    shares = [100 * area / (80 * 30) for area in _values(wedged, "wedge_area")]
     assert table["wedge"]["wedges % of wall median"] == pytest.approx(median(shares), abs=1e-4)
     (ax,) = made["fig20"].pictures[0].figure.axes
     assert ax.get_xlabel().startswith("rubble: ")
@@ -124,7 +124,8 @@ def test_stabilisation(made, here):
 
 
 def test_all_methods(here):
-    wall = replace(RUBBLE, name="PR", width=RUBBLE.width + 0.5)
+    source = replace(RUBBLE.source, seed=7)  # two sides are used by every way
+    wall = replace(RUBBLE, name="PR", source=source, width=RUBBLE.width + 0.5)
     output = on("figB30-32", wall, seeds=1).make(here)
     table = rows(output, "figB30_32")
     assert len(table) == 8
@@ -192,7 +193,7 @@ def test_more_walls_tell_a_difference():
 
 
 def test_variants(here):
-    walls = (replace(RUBBLE, name="free"), replace(RUBBLE, name="framed", width=104))
+    walls = (replace(RUBBLE, name="free"), replace(RUBBLE, name="framed", width=84))
     found = ways.named_variants(here, ((walls[0], ways.NAMED), (walls[1], {})), 2)
     assert [(one.wall.name, one.way) for one in found] == [
         ("free", "paper"), *(("free", way) for way in ways.NAMED), ("framed", "paper")
@@ -203,7 +204,7 @@ def test_variants(here):
 
 def test_resolutions_stones_and_clusters(here):
     output = of("fig29", RUBBLE, (0.5, 1.0)).make(replace(here, quick=True))
-    assert [row["wall, px"] for row in rows(output, "walls")] == ["50 x 20", "100 x 40"]
+    assert [row["wall, px"] for row in rows(output, "walls")] == ["40 x 15", "80 x 30"]
     assert [name for name, _ in output.times] == ["claims", "released", "pixels"]
     assert [picture.name for picture in output.pictures] == ["fig29", "fig29-time"]
     output = of("growth", ((8, 12), (0.1,))).make(replace(here, quick=True))
@@ -242,9 +243,9 @@ def test_the_times_of_the_authors(data_dir, tmp_path):
 
 
 def test_generated_stones_stand_in_for_published_ones_and_are_no_references(data_dir, tmp_path):
-    counts = {wall.number: len(wall.source.stones(data_dir)) for wall in NOISY}
-    assert counts == {10: 28, 20: 23, 30: 22, 40: 26, 50: 27, 60: 23, 70: 25, 80: 18}
-    for wall in NOISY:
+    counts = {wall.number: len(wall.source.stones(data_dir)) for wall in NOISY[1::3]}
+    assert counts == {20: 23, 50: 27, 80: 18}
+    for wall in NOISY[1::3]:
         assert wall.here(data_dir) is wall
         assert (wall.said, wall.width) == ("published", 0)
         made = wall.here(tmp_path)
