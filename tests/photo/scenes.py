@@ -8,7 +8,7 @@ from drystone.photo.view import apply
 from drystone_lab.photographs.rendered import PhotoLevel
 
 SMALL = PhotoLevel(
-    name="small", count=8, width_px=600, height_px=450, px_per_m=400.0, gap_px=10, markers="none"
+    name="small", count=6, width_px=480, height_px=360, px_per_m=400.0, gap_px=10, markers="none"
 )
 """Some stones on a ground."""
 
