@@ -181,7 +181,7 @@ class Outer:
 ONE = Outer("a", 1, 0.1, True, None, (Inner("left", (1, 2)), Inner("right", (1.0, 2.5))))
 
 
-NAMES = st.text(st.sampled_from('a"\\\n\0\x7f\u2028é\uffff𝕊'))
+NAMES = st.text(st.sampled_from('a"\\\n\0\x7f\u2028é\uffff\U0001d54a'))
 """Not of all characters: their table alone takes a second or two."""
 
 

@@ -10,7 +10,7 @@ from drystone_lab.runs.spec import generated
 from drystone_lab.walls import Target
 
 RUBBLE = Target(
-    "rubble", generated("rubble", 3, count=16, width_px=160, height_px=60, courses=4), 170, 64, 1.0
+    "rubble", generated("rubble", 3, count=12, width_px=128, height_px=54, courses=4), 136, 58, 1.0
 )
 
 SHARP = Target("sharp", generated("polygon", 3, count=14, noise=0.3), 700, 300, 0.2)
