@@ -67,13 +67,13 @@ def test_most_texts_stay_in_their_language():
 
 
 def test_json_gets_doubled_and_odd_keys_deep_nesting_and_other_pictures():
-    files = changes(change_json, coco(), 400)
+    files = changes(change_json, coco(), 250)
     assert any(b"[" * 400 in data or b'{"a":' * 400 in data for data in files)
     assert any(b"\\ud800" in data for data in files)
     assert any(data.count(b'"images"') > 1 for data in files)
     seeds = labelme()[1:]
     mask = json.loads(seeds[0])["shapes"][0]["mask"].encode()
-    files = [data for data in changes(change_json, seeds, 400) if mask not in data]
+    files = [data for data in changes(change_json, seeds, 150) if mask not in data]
     assert any(b'"iVBORw0KGgo' in data for data in files)
 
 

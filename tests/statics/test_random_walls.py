@@ -91,7 +91,7 @@ def test_answers_are_proved(labels, mu):
 
 
 @given(strategies.label_images(), FRICTIONS)
-@strategies.repeatable(20)
+@strategies.repeatable(12)
 def test_without_dilatancy_random_walls_carry_no_more(labels, mu):
     model = model_from_labels(labels, mu).model
     associative, both = lateral_resistance(model), nonassociative_resistance(model)
