@@ -10,10 +10,8 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, settings
 
-# Before NumPy is there: threads that wait for each other take most of the time of small matrices,
-# and there is a process of tests on every core.
+# Before NumPy is there: threads that wait for others take most of the time of small matrices.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-
 # No clock anywhere: a loaded machine must not fail correct code.  The same examples in every run.
 settings.register_profile(
     "repeatable",

@@ -162,7 +162,6 @@ LIGHT = np.arange(256) / 255.0
 # PDFium mixes black and white by area in values, a lens in light.
 SEEN = np.where(LIGHT > 0.0031308, 1.055 * LIGHT ** (1 / 2.4) - 0.055, 12.92 * LIGHT)
 SEEN = np.rint(255.0 * SEEN).astype(np.uint8)
-"""The value of a px by the value that PDFium gives it."""
 
 
 def rendered(path, page=0, dpi=DPI):
@@ -172,7 +171,7 @@ def rendered(path, page=0, dpi=DPI):
         size_mm = np.array(one.get_size()) / 72 * 25.4
         picture = one.render(scale=dpi / 72).to_numpy()[..., :3]
         text = one.get_textpage().get_text_range()
-    return np.ascontiguousarray(SEEN[picture]), size_mm, text
+    return SEEN[picture], size_mm, text
 
 
 @pytest.mark.parametrize(

@@ -53,9 +53,7 @@ def codes(found):
     return [notice.code for notice in notices_of(doubts_of(found))]
 
 
-MORE = replace(SMALL, count=8, width_px=600, height_px=450)
-"""So wide that its light is not even."""
-
+MORE = replace(SMALL, count=8, width_px=600, height_px=450)  # of so much light is not even
 EASY = {
     "tarpaulin": {"count": MORE.count, "width_px": MORE.width_px, "height_px": MORE.height_px},
     "rubber": {"rocks": ("granite", "limestone"), "seed": 2},
@@ -375,8 +373,7 @@ def test_what_is_no_photograph_of_stones_laid_out_is_in_doubt_or_refused(kind):
     if isinstance(kind, str):
         picture = np.ascontiguousarray(installed(kind)[61:357, 211:507])
     else:
-        window = np.s_[:, :] if kind is sheet else np.s_[20:340, 40:440]
-        picture = kind(np.random.default_rng(1))[window]
+        picture = kind(np.random.default_rng(1))[... if kind is sheet else np.s_[20:340, 40:440]]
     try:
         found = segment(picture)
         said = [one.code for one in verdict_notices(verdict_of(found, doubts_of(found)))]
@@ -416,13 +413,10 @@ def on_blue(*discs):
     return picture
 
 
-def test_few_stones_on_a_large_plain_ground_are_not_in_doubt():
+def test_few_stones_on_plain_ground_are_not_in_doubt_and_many_left_out_are_named_in_part():
     found = segment(on_blue((120, 22), (300, 22), (480, 22)))
     assert found.count == 3
     assert not verdict_of(found, doubts_of(found))
-
-
-def test_many_shapes_that_were_left_out_are_named_in_part():
     picture = on_blue((280, 70))
     for col in range(30, 540, 40):
         picture[395:401, col : col + 6] = 130, 120, 110

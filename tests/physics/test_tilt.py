@@ -43,8 +43,7 @@ HOOK = np.array([[0, 0], [4, 0], [4, 3], [3, 3], [3, 1], [1, 1], [1, 3], [0, 3]]
 def test_closed_forms():
     for name, scene, direction, expected in (
         ("tall block topples", scene_of((0, 0, 1, 2), mu=0.7), "right", 0.5),
-        ("flat block slides", scene_of((0, 0, 2, 1), mu=0.58), "left", 0.58),
-        ("any unit of length", scene_of((0, 0, 20, 10), mu=0.3), "left", 0.3),
+        ("flat block slides, in any unit", scene_of((0, 0, 20, 10), mu=0.3), "left", 0.3),
         ("column of six", COLUMN, "left", 1 / 6),
         ("offset stack, over its edge", scene_of(*OFFSET, mu=0.9), "right", 0.2),
         ("offset stack, the other way", scene_of(*OFFSET, mu=0.9), "left", 0.7),
@@ -146,8 +145,7 @@ def test_the_scatter_is_that_of_the_trials():
 def test_a_published_wall_falls_without_dilatancy():
     """Example 3 of Ferris and Tin-Loi: .3558 without dilatancy, .4037 with."""
     wall = WALLS[2]
-    tilt = TiltSettings(coarse=0.128, fine=0.004)
-    quick = Variation("few iterations", EngineSettings(iterations=20), tilt)
+    quick = Variation("few", EngineSettings(iterations=20), TiltSettings(coarse=0.128, fine=0.004))
     scene, rng = scene_of(*wall.rectangles, mu=MU), np.random.default_rng(0)
     _, found = compare_with_tilt(scene, wall.model, rng, (quick,))
     assert found.simulated.direction == "right"

@@ -65,9 +65,8 @@ def test_tables_pages_and_json(run_items, tmp_path):
 
 
 def test_all_goes_on_without_some_stones(run_items, tmp_path, monkeypatch):
-    some = {name: reproduce.ITEMS[name] for name in ("table1", "fig13", "beta")}
-    monkeypatch.setattr(reproduce, "ITEMS", some)
-    items = dict.fromkeys(some, fakes.NEEDY)
+    items = dict.fromkeys(("table1", "fig13", "beta"), fakes.NEEDY)
+    monkeypatch.setattr(reproduce, "ITEMS", items)
     assert run_items("all", "-o", tmp_path / "none", items=items).code == ExitCode.BAD_INPUT
     ran = run_items("all", "-o", tmp_path / "out", items=items | {"beta": fakes.WORDS})
     assert ran.code == 0

@@ -20,11 +20,7 @@ ONLY_PATHS = NonassociativeSettings(starts=(), random_starts=0)
 
 @pytest.mark.parametrize("closing", [0.0, 1.0])
 @pytest.mark.parametrize("sign", [1.0, -1.0])
-@pytest.mark.parametrize(
-    "model",
-    [walls.boxes([0, 0, 1, 2]), walls.brick_model(2, 2, 1.0, 0.58)],
-    ids=["block", "bricks"],
-)
+@pytest.mark.parametrize("model", [walls.boxes([0, 0, 1, 2]), walls.brick_model(2, 2, 1.0, 0.58)])
 def test_the_end_of_a_path_equals_its_twin(model, sign, closing):
     """To what t = 1e-9 leaves of the slowest velocities."""
     program = assemble(model)
