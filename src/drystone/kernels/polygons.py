@@ -117,17 +117,23 @@ def no_polygons() -> Polygons:
 
 
 def polygon_edges(corners: Points) -> Points:
-    """Return the edges of a polygon as rows (unit vector x, y, length), from each corner on."""
+    """Return the edges of a polygon as rows (unit vector x, y, length), from each corner on.
+
+    An edge without length has no direction: NaN, whether or not this is compiled.
+    """
     count: cython.Py_ssize_t = len(corners)
     edges = np.empty((count, 3))
     corners = np.ascontiguousarray(corners, np.float64)
     at: cython.p_double = doubles(corners)
     to: cython.p_double = doubles_out(edges)
+    nowhere: cython.double = math.nan
     for i in range(count):
         k = 2 * (i + 1) if i + 1 < count else 0
         x, y = at[k] - at[2 * i], at[k + 1] - at[2 * i + 1]
         length = sqrt(x * x + y * y)
-        to[3 * i], to[3 * i + 1], to[3 * i + 2] = x / length, y / length, length
+        to[3 * i], to[3 * i + 1], to[3 * i + 2] = nowhere, nowhere, length
+        if length > 0.0:
+            to[3 * i], to[3 * i + 1] = x / length, y / length
     return edges
 
 
