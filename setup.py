@@ -77,6 +77,7 @@ class BuildKernels(build_ext):
         An editable installation keeps what `build_ext --inplace` has made of these very sources.
         """
         made = [SOURCE / self.get_ext_filename(extension.name) for extension in self.extensions]
+        in_place = self.inplace
         if self.editable_mode and all(map(is_up_to_date, made, self.extensions)):
             self.extensions = []
             return
@@ -86,6 +87,8 @@ class BuildKernels(build_ext):
             print(f"kernels are not compiled, they run in Python: {error}", flush=True)
             for extension in self.extensions:
                 Path(self.get_ext_fullpath(extension.name)).unlink(missing_ok=True)
+            for path in made if in_place else ():  # of sources that were others
+                path.unlink(missing_ok=True)
             self.extensions = []
 
     def build_extensions(self) -> None:

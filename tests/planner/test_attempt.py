@@ -262,19 +262,17 @@ def test_candidates_on_which_the_solver_gave_up_are_counted_and_said(failing, mo
 
 
 def test_candidates_that_were_solved_again_are_counted_and_change_nothing(monkeypatch):
-    plain, again = [], []
-    for found in (plain, again):
-        for budget in (1, 2):
-            settings = greedy({"search": {"budget": budget}})
-            found.append(ds.plan_wall(rubble(1, 7), 100, 36, scale=1.0, seed=1, settings=settings))
-        monkeypatch.setattr(
-            IncrementalAnalysis,
-            "resistance_with",
-            lambda _, model: IncrementalResult(ds.lateral_resistance(model), solved_cold=True),
-        )
-    for one, other in zip(plain, again, strict=True):
-        assert (one.notices, one.solves) == ((), Solves())
-        assert (other.notices, other.solves.failed) == ((), 0)  # it costs time alone
-        assert other.wall.labels.tobytes() == one.wall.labels.tobytes()
-    # Those of the second wall are counted as well.
-    assert again[1].solves.cold > again[0].solves.cold > 20
+    def planned(budget):
+        settings = greedy({"search": {"budget": budget}})
+        return ds.plan_wall(rubble(1, 7), 100, 36, scale=1.0, seed=1, settings=settings)
+
+    def again(_, model):
+        return IncrementalResult(ds.lateral_resistance(model), solved_cold=True)
+
+    plain = planned(1)
+    assert (plain.notices, plain.solves) == ((), Solves())
+    monkeypatch.setattr(IncrementalAnalysis, "resistance_with", again)
+    one, two = planned(1), planned(2)
+    assert one.wall.labels.tobytes() == plain.wall.labels.tobytes()
+    assert (one.notices, one.solves.failed) == ((), 0)  # it costs time alone
+    assert two.solves.cold > one.solves.cold > 20  # those of the second wall are counted as well

@@ -24,7 +24,7 @@ from drystone.statics.limit import lateral_resistance
 from drystone.statics.local_update import Near, local_update
 from drystone.statics.lp.highs import WARM, WarmSession
 from drystone.statics.lp.program import Units
-from drystone.statics.model import Addition
+from drystone.statics.model import GROUND, Addition
 from drystone.statics.result import CERTIFIED, LimitStatus
 from tests.kernels.simplex_walls import needs_kernel
 from tests.statics.walls import boxes, coursed, empty, irregular, stacked, with_block
@@ -104,7 +104,7 @@ def begin(name, monkeypatch):
         return incremental_analysis
     if not simplex.AVAILABLE:
         pytest.skip("the simplex kernel is not compiled here")
-    return partial(incremental_analysis, most=1) if name == "local" else incremental_analysis
+    return partial(incremental_analysis, most=0) if name == "local" else incremental_analysis
 
 
 @pytest.mark.parametrize("labels", [coursed(1, 5, 110, 2), irregular(3, 18, 100, 70)])
@@ -237,6 +237,21 @@ def test_no_load_brings_down_what_is_wedged_between_pins(begin):
     for found in (analysis.resistance_with(model), analysis.extended(model).result):
         both = found.resistance
         assert both.left.status is both.right.status is LimitStatus.UNBOUNDED
+
+
+def test_a_stone_that_takes_away_one_end_of_the_load_is_no_trouble(begin, name):
+    """It stands between the wall and a pin of the ground; the kernel is for walls without pins."""
+    whole = boxes([0, 0, 20, 40], [20, 0, 20, 40])
+    post, stone = whole.blocks
+    at = {"points": np.array([(40.0, 20.0)]), "normal": (-1.0, 0.0)}
+    pin = replace(whole.interfaces[0], block=stone.id, other=GROUND, **at)
+    analysis = begin(with_block(empty(), post, whole=whole), PX)
+    stopped = with_block(analysis.model, stone, whole=whole).added
+    model = analysis.model.with_added(stopped.blocks, (*stopped.interfaces, pin))
+    for found in (analysis.resistance_with(model), analysis.extended(model).result):
+        assert found.solved_cold == (name == "simplex")
+        assert found.resistance.right.status is LimitStatus.UNBOUNDED
+        assert found.resistance.left.alpha == pytest.approx(lateral_resistance(model).left.alpha)
 
 
 def test_a_wall_may_be_given_at_once(begin, name):

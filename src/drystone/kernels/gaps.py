@@ -100,8 +100,8 @@ class Heap(Body):
 class MovingStone(Body):
     """A polygon with its centroid that moves, and the gaps around it, seven numbers each.
 
-    It has room for numbers of edges that are near, and for the linear programs of its motions,
-    in which each gap has two rows at most.
+    It has room for numbers of edges that are near, and for the linear programs of its motions.
+    Each gap has two rows in these at most.
     """
 
     def __init__(self) -> None:

@@ -34,8 +34,9 @@ def solve(
 ) -> tuple[float, float, float] | None:
     """Maximise a gain; None when nothing fulfils all rows.  Kernels ask :func:`solve3`.
 
-    Rows (n, 4) are coefficients, about 1 in size, and what their sum may be at most.  A gain below
-    1e-12 counts as none, and the smallest value is taken.  `most` are the largest absolute values.
+    Rows (n, 4) are coefficients, one of them about 1, and what their sum may be at most.  A gain
+    below 1e-12 counts as none, and the smallest value is taken.  `most` are the largest absolute
+    values.
     """
     shuffled, scratch = np.array(rows), np.empty(3 * len(rows) + 6)
     x: cython.double[3] = [0.0, 0.0, 0.0]

@@ -239,7 +239,10 @@ class LocalAnalysis(ConeAnalysis):
         grown = self._grown(model)
         if grown is None:
             return self._in_highs().resistance_with(model)
-        return _result_between(model, self._bounds(model, grown[1]))
+        bounds = self._bounds(model, grown[1])
+        if bounds is None:
+            return self._in_highs().resistance_with(model)
+        return _result_between(model, bounds)
 
     def _extended_to(self, model: RigidBlockModel) -> IncrementalAnalysis:
         grown = self._grown(model)
@@ -253,10 +256,10 @@ class LocalAnalysis(ConeAnalysis):
             if end.unsolved < UNSOLVED:
                 found, bound = self._found_near(near, end.known, opposite.known)
             if found is not None and bound is not None:
-                new = len(added.cones.first)
+                carried = found.forces[len(found.forces) - len(added.cones.first) :]
                 # HiGHS is told of the stone without solving: the basis gets what carries it.
                 basis = end.basis.without(added.closed)
-                basis = basis.carrying(found.forces[-new:], 3 * len(added.weights))
+                basis = basis.carrying(carried, 3 * len(added.weights))
                 after = LocalEnd(found, basis, end.unsolved + 1)
             else:
                 after, bound = self._solved(model, added, end)
@@ -295,10 +298,10 @@ class LocalAnalysis(ConeAnalysis):
         bound = _bound_of(self.program, added, found, sign, WARM)
         return LocalEnd(found, session.basis() or basis), bound
 
-    def _bounds(self, model: RigidBlockModel, added: Added) -> "tuple[Bound | None, ...]":
+    def _bounds(self, model: RigidBlockModel, added: Added) -> "tuple[Bound, ...] | None":
         """Find the end that is weaker in the wall; of the other, whether it is no weaker (LLC).
 
-        A fall alone says enough.  None where an end is not found.
+        A fall alone says enough.  None where an end is not found, or there is none.
         """
         near, found = Near(self.program, added), dict[int, Bound]()
         for one, other in sorted(self._ends, key=lambda ends: abs(ends[0].known.alpha)):
@@ -308,7 +311,7 @@ class LocalAnalysis(ConeAnalysis):
             bound = bound or self._found_near(near, end, opposite)[1]
             bound = bound or self._solved(model, added, one)[1]
             if bound is None or bound.falls:
-                return (bound,)
+                return None if bound is None else (bound,)
             found[end.sign] = bound
         return found[1], found[-1]
 
