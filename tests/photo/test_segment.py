@@ -413,10 +413,13 @@ def on_blue(*discs):
     return picture
 
 
-def test_few_stones_on_plain_ground_are_not_in_doubt_and_many_left_out_are_named_in_part():
+def test_few_stones_on_a_large_plain_ground_are_not_in_doubt():
     found = segment(on_blue((120, 22), (300, 22), (480, 22)))
     assert found.count == 3
     assert not verdict_of(found, doubts_of(found))
+
+
+def test_many_shapes_that_were_left_out_are_named_in_part():
     picture = on_blue((280, 70))
     for col in range(30, 540, 40):
         picture[395:401, col : col + 6] = 130, 120, 110

@@ -19,7 +19,7 @@ cdef class BuiltWall(Heap):
     cdef readonly object how
     cdef double mu
     cdef dict numbers
-    cdef list ids, built, beds, kept
+    cdef list ids, built, beds
     cdef p_int places, order
 
 

@@ -679,8 +679,7 @@ def rolled(wall, number, loads):
     rests_alone: cython.bint = False
     tipped = []
     if status not in (RESTS, OVERLAPS):
-        about = built.corners - (built.x, built.y)
-        own: Way = way_of(about, edges, rules)
+        own: Way = way_of(built.corners - (built.x, built.y), edges, rules)
         rests_alone = let_go(own, wall, built.x, built.y, 0.0) == RESTS
         for part in TIPS:
             less = rules._replace(turn=part * rules.turn, shift=part * rules.shift)

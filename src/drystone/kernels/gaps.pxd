@@ -6,6 +6,7 @@ from libc.math cimport sqrt
 
 
 cdef class Body:
+    cdef list kept
     cdef p_double corners, edges
     cdef Py_ssize_t first, count
     cdef double left, low, right, high

@@ -119,8 +119,9 @@ class MovingStone(Body):
 
 
 def heap_of(around, width):
-    """Return polygons, which have to outlive it."""
+    """Return polygons, whose arrays it keeps."""
     heap: Heap = Heap()
+    heap.kept = list(around)
     heap.corners, heap.edges = doubles(around.corners), doubles(around.edges)
     heap.size, heap.starts, heap.boxes = len(around), ints(around.first), doubles(around.boxes)
     heap.width, heap.beyond = width, 0.0
@@ -128,8 +129,9 @@ def heap_of(around, width):
 
 
 def stone_of(corners, edges):
-    """Return a polygon without gaps; its arrays have to outlive it."""
+    """Return a polygon without gaps, whose arrays it keeps."""
     stone: MovingStone = MovingStone()
+    stone.kept = [corners, edges]
     stone.corners, stone.edges = doubles(corners), doubles(edges)
     stone.first, stone.count, stone.found = 0, len(corners), 0
     measure(stone)

@@ -183,8 +183,7 @@ def rest_margin(
     """
     require_friction(mu)
     corners = np.ascontiguousarray(corners, np.float64)
-    edges = polygon_edges(corners)
-    stone: MovingStone = stone_of(corners, edges)
+    stone: MovingStone = stone_of(corners, polygon_edges(corners))
     stone.x, stone.y = centroid
     find_gaps(stone, heap_of(around, width), tolerance, CORNER)
     arm: cython.double = arm_of(stone.corners, stone.count, stone.x, stone.y)
@@ -198,7 +197,7 @@ def require_friction(mu: float) -> None:
 
 
 def way_of(outline, edges, rules):
-    """Return what is let go, of which both arrays have to outlive it."""
+    """Return what is let go, whose arrays it keeps."""
     require_friction(rules.mu)
     way: Way = Way()
     way.corners, way.edges, way.count = doubles(outline), doubles(edges), len(outline)
@@ -208,7 +207,7 @@ def way_of(outline, edges, rules):
         way.most_turn, way.most_shift, way.gain, way.overlap, way.steep, way.beyond, way.sticks,
         way.turns, way.steps,
     ) = rules  # fmt: skip
-    way.room = []
+    way.room = [outline, edges]
     way.here, way.there = state_of(way), state_of(way)
     return way
 

@@ -237,9 +237,7 @@ class LocalAnalysis(ConeAnalysis):
 
     def _result_with(self, model: RigidBlockModel) -> IncrementalResult:
         grown = self._grown(model)
-        if grown is None:
-            return self._in_highs().resistance_with(model)
-        bounds = self._bounds(model, grown[1])
+        bounds = None if grown is None else self._bounds(model, grown[1])
         if bounds is None:
             return self._in_highs().resistance_with(model)
         return _result_between(model, bounds)
