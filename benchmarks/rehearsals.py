@@ -99,7 +99,7 @@ def rows_of(
                     start = time.process_time()
                     found = LOOPS[loop](groups, errors, np.random.default_rng([99, run]))
                     if run < asked.tilts and found.tilt is None:
-                        found = replace(found, tilt=tilt_as_built(found))
+                        found = replace(found, tilt=tilt_as_built(groups, found))
                     row = {
                         "level": level, "loop": loop, "run": run,
                         "fallen": sum(end.fallen for end in found.stones),

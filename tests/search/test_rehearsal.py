@@ -166,12 +166,22 @@ def test_a_wall_as_it_was_built_is_tilted():
     pytest.importorskip("pymunk")
     low = [[(k + 1, box(41.0 * k, 0.0))] for k in range(2)]
     (run,) = runs(low, HAND, 1, rehearse_closed)
-    assert tilt_as_built(run) == pytest.approx(1.0, abs=0.1)  # it slides
+    assert tilt_as_built(low, run) == pytest.approx(1.0, abs=0.1)  # it slides
     # A column that is thrice as high as wide topples at a third; one on an edge falls at once.
-    high = rehearse([[(1, box(0.0, 0.0, 20.0, 60.0))]], NONE, np.random.default_rng(0))
+    column, wedge = [[(1, box(0.0, 0.0, 20.0, 60.0))]], (2, box(50.0, 40.0, 5.0, 5.0))
+    high = rehearse(column, NONE, np.random.default_rng(0))
     topples = pytest.approx(0.333 / 0.58, abs=0.05)
-    assert tilt_as_built(high) == topples
+    assert tilt_as_built(column, high) == topples
     # A wedge that comes out is lost, a stone is not.
-    out = replace(high, blocks=(*high.blocks, (2, box(50.0, 40.0, 5.0, 5.0))))
-    assert tilt_as_built(out) == topples
-    assert tilt_as_built(replace(out, stones=(*high.stones, replace(high.stones[0], stone=2)))) == 0
+    out = replace(high, blocks=(*high.blocks, wedge))
+    assert tilt_as_built([[*column[0], wedge]], out) == topples
+    two = replace(out, stones=(*high.stones, replace(high.stones[0], stone=2)))
+    assert tilt_as_built([*column, [(2, box(90.0, 0.0, 5.0, 5.0))]], two) == 0
+
+
+def test_what_goes_into_its_planned_place_has_not_fallen():
+    pytest.importorskip("pymunk")
+    planned, high = [[(1, box(0.0, y))] for y in (0.0, 10.0)]
+    run = replace(rehearse([planned], NONE, np.random.default_rng(0)), blocks=tuple(high))
+    assert tilt_as_built([planned], run) == pytest.approx(1.0, abs=0.1)
+    assert tilt_as_built([high], run) == 0

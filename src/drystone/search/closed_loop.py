@@ -27,8 +27,16 @@ from drystone.physics.scatter import Variation
 from drystone.physics.tilt import TiltSettings
 from drystone.planner.vary import TRIAL_DRAWS
 from drystone.search.letting_go import cheapest_apart
-from drystone.search.rehearsal import IN_ENGINE, Groups, RehearsalRun, end_of, errors_of, mean_size
-from drystone.settle.putting import FALLEN_DEG, FALLEN_SHARE, astray, bare_wall, lost
+from drystone.search.rehearsal import (
+    IN_ENGINE,
+    Groups,
+    RehearsalRun,
+    end_of,
+    errors_of,
+    mean_size,
+    moved,
+)
+from drystone.settle.putting import astray, bare_wall, lost
 from drystone.settle.settings import SettleSettings
 
 TRIALS = 8
@@ -63,8 +71,6 @@ OVER_TOP = 0.25
 
 PATIENT = replace(
     IN_ENGINE,
-    moved_share=FALLEN_SHARE,
-    turned_deg=FALLEN_DEG,
     longest_rest=20.0,
     apart_share=0.0,  # they come as they lie, all at once
 )
@@ -277,18 +283,28 @@ def _reach(built: Built) -> tuple[float, float]:
     return float(built.corners[:, 0].min()), float(built.corners[:, 0].max())
 
 
-def tilt_as_built(run: RehearsalRun, mu: float = 0.58) -> float:
+def tilt_as_built(groups: Groups, run: RehearsalRun, mu: float = 0.58) -> float:
     """Return by how much what has not fallen of a wall may be tilted, over mu: the smaller side.
 
     Its outlines as they lie are let go in the rigid-body engine (extra `physics`) and tilted from
-    where they come to rest.  0 where stones fall then.  Wedges alone may be lost.
+    where they come to rest.  0 where a stone falls then: it ends far from where it lay, and from
+    where it is planned.  Wedges alone may be lost.
     """
-    stones, lies = {end.stone for end in run.stones}, run.blocks
+    lies, owner = dict(run.blocks), {i: group[0][0] for group in groups for i, _ in group}
+    planned = {stone: as_planned(corners) for (stone, corners), *_ in groups}
+    turns_deg = {end.stone: end.turn_deg or 0.0 for end in run.stones}
     while True:
-        built = build_up([lies], mu, PATIENT)
-        lost = {move.id for move in built.moves if move.fell}
-        if not lost or lost & stones:
+        built, gone = build_up([list(lies.items())], mu, PATIENT), set[int]()
+        for block, corners in lies.items():
+            lay = replace(as_planned(corners), size=planned[owner[block]].size)
+            now = moved(lay, built.outlines[block])
+            if block in planned and astray(now, lay):
+                now, lay = replace(now, angle_deg=now.angle_deg + turns_deg[block]), planned[block]
+            if astray(now, lay):
+                gone.add(block)
+        if not gone or gone & planned.keys():
             break
-        lies = tuple((i, corners) for i, corners in lies if i not in lost)
-    alphas = [one.alpha for one in tilt_of(built, (TILT,)) or () if one.alpha is not None]
+        lies = {i: corners for i, corners in lies.items() if i not in gone}
+    tilts = () if gone else tilt_of(built, (TILT,)) or ()
+    alphas = [one.alpha for one in tilts if one.alpha is not None]
     return min(alphas) / mu if alphas else 0.0

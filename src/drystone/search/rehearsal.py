@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from drystone.kernels.as_built import Built, BuiltWall
-from drystone.kernels.polygons import area_and_centroid
+from drystone.kernels.polygons import Points, area_and_centroid
 from drystone.kernels.raster import wrap_deg
 from drystone.model.builder import BuilderErrors, as_planned, put_down_with, stratified
 from drystone.model.outlines import Outlined
@@ -156,21 +156,26 @@ def end_of(block: int, at: Built, built: Built | None) -> StoneEnd:
     return StoneEnd(block, astray(built, at), share, built.angle_deg)
 
 
+def moved(built: Built, corners: Points) -> Built:
+    """Return a block that came from one place to where its corners are now."""
+    _, x, y = area_and_centroid(corners)
+    # As complex numbers: the angle between the two outlines about their means.
+    before, after = ((one - one.mean(axis=0)) @ (1, 1j) for one in (built.corners, corners))
+    turn_deg = wrap_deg(built.angle_deg + math.degrees(cmath.phase(np.vdot(before, after))))
+    return replace(built, x=x, y=y, angle_deg=turn_deg)
+
+
 def rehearse_in_engine(
     groups: Groups, errors: BuilderErrors, rng: np.random.Generator, *, mu: float = 0.58
 ) -> RehearsalRun:
     """Build a wall once with the same errors in a rigid-body engine (extra `physics`)."""
     put = errors_of(groups, errors, rng)
     found = build_up([[(i, one.corners) for i, one in group] for group in put], mu, IN_ENGINE)
-    ends = []
-    for (planned, *_), ((block, built), *_) in zip(groups, put, strict=True):
-        corners = found.outlines[block]
-        _, x, y = area_and_centroid(corners)
-        # As complex numbers: the angle between the two outlines about their means.
-        before, after = ((one - one.mean(axis=0)) @ (1, 1j) for one in (built.corners, corners))
-        turn_deg = wrap_deg(built.angle_deg + math.degrees(cmath.phase(np.vdot(before, after))))
-        ended = replace(built, x=x, y=y, angle_deg=turn_deg)
-        ends.append(end_of(block, as_planned(planned[1]), ended))
+    pairs = [(planned, put) for (planned, *_), (put, *_) in zip(groups, put, strict=True)]
+    ends = [
+        end_of(block, as_planned(corners), moved(built, found.outlines[block]))
+        for (_, corners), (block, built) in pairs
+    ]
     fallen = {end.stone for end in ends if end.fallen}
     lies = tuple((i, corners) for i, corners in found.outlines.items() if i not in fallen)
     if fallen:

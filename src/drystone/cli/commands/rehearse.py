@@ -85,7 +85,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
             mu = np.random.default_rng([arguments.seed, number, 1]).uniform(least, most)
             ran = once(groups, errors, rng, mu=mu)
             tilts = closed and arguments.physics and ran.first_fall is None
-            found.append(replace(ran, tilt=tilt_as_built(ran, mu)) if tilts else ran)
+            found.append(replace(ran, tilt=tilt_as_built(groups, ran, mu)) if tilts else ran)
             on_run(number + 1)
     engine = arguments.physics and not closed
     card = Rehearsed(plan, groups, errors, tuple(found), planned, engine=engine)
