@@ -26,8 +26,14 @@ from drystone.contacts.given import model_from_json, polygons_from_json
 from drystone.io.walls import read_wall
 from drystone.model.builder import HAND, ROBOT, BuilderErrors
 from drystone.model.steps import grouped, piece_id
-from drystone.search.closed_loop import rehearse_closed, tilt_as_built
-from drystone.search.rehearsal import Groups, mean_size, rehearse, rehearse_in_engine
+from drystone.search.closed_loop import rehearse_closed
+from drystone.search.rehearsal import (
+    Groups,
+    mean_size,
+    rehearse,
+    rehearse_in_engine,
+    tilt_as_built,
+)
 from drystone.statics.flow.nonassociative import nonassociative_resistance
 from drystone_lab.walls import IR, NOISY, PR_560, PR_600, UNSEEN, R, chosen
 

@@ -8,8 +8,8 @@ import pytest
 import shapely
 
 from drystone.model.builder import HAND, ROBOT, BuilderErrors, stratified
-from drystone.search.closed_loop import rehearse_closed, tilt_as_built
-from drystone.search.rehearsal import mean_size, rehearse, rehearse_in_engine
+from drystone.search.closed_loop import rehearse_closed
+from drystone.search.rehearsal import mean_size, rehearse, rehearse_in_engine, tilt_as_built
 from tests.polygons import box_of as box
 
 NONE = BuilderErrors(placement=0.0, angle_deg=0.0, outline=0.0)

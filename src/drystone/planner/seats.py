@@ -26,11 +26,11 @@ from drystone.settle.settings import SettleSettings
 MARGIN = 1.25
 """A place is tried with a hand's errors times this, so that it is sure with some to spare."""
 
-FALL, FALL_OF_MANY, MANY = 14.0, 4.0, 80
+FALL, FALL_OF_MANY, MANY = 19.0, 4.0, 80
 """A stone that would fall in all trials is laid when it is larger than so many mean stones.
 
-A wall that is not whole counts as one without :data:`drystone.search.goal.STOPPED` more stones.
-With more than :data:`MANY` stones it hardly ever stays whole, and is to be finished.
+So of twenty trials one of the mean size may fall in one.  With more than :data:`MANY` stones a wall
+hardly ever stays whole, and is to be finished.
 """
 
 KNOWN_BYTES = 1 << 27

@@ -22,20 +22,9 @@ from drystone.kernels.as_built import Built, BuiltWall
 from drystone.kernels.profiles import HeightProfile, bare, hanging, raised
 from drystone.model.builder import BuilderErrors, as_planned, stratified
 from drystone.model.outlines import Outlined
-from drystone.physics.building import ROUNDED, build_up, tilt_of
-from drystone.physics.scatter import Variation
-from drystone.physics.tilt import TiltSettings
 from drystone.planner.vary import TRIAL_DRAWS
 from drystone.search.letting_go import cheapest_apart
-from drystone.search.rehearsal import (
-    IN_ENGINE,
-    Groups,
-    RehearsalRun,
-    end_of,
-    errors_of,
-    mean_size,
-    moved,
-)
+from drystone.search.rehearsal import Groups, RehearsalRun, end_of, errors_of, mean_size
 from drystone.settle.putting import astray, bare_wall, lost
 from drystone.settle.settings import SettleSettings
 
@@ -68,15 +57,6 @@ SPOTS, APART, COLUMNS = 8, 0.3, 16
 
 OVER_TOP = 0.25
 """A stone of the heap may stand out over the plan by so much, mean sizes."""
-
-PATIENT = replace(
-    IN_ENGINE,
-    longest_rest=20.0,
-    apart_share=0.0,  # they come as they lie, all at once
-)
-TILT = Variation("as built", ROUNDED, TiltSettings(coarse=0.13, fine=0.02, longest_hold=20))
-"""How a wall as it was built is let go and tilted: stones that rest at a few points go on to roll
-for a while, and errors of percents leave no digits to look for."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -281,30 +261,3 @@ class _Work:
 def _reach(built: Built) -> tuple[float, float]:
     """Return from where to where along the wall a block reaches."""
     return float(built.corners[:, 0].min()), float(built.corners[:, 0].max())
-
-
-def tilt_as_built(groups: Groups, run: RehearsalRun, mu: float = 0.58) -> float:
-    """Return by how much what has not fallen of a wall may be tilted, over mu: the smaller side.
-
-    Its outlines as they lie are let go in the rigid-body engine (extra `physics`) and tilted from
-    where they come to rest.  0 where a stone falls then: it ends far from where it lay, and from
-    where it is planned.  Wedges alone may be lost.
-    """
-    lies, owner = dict(run.blocks), {i: group[0][0] for group in groups for i, _ in group}
-    planned = {stone: as_planned(corners) for (stone, corners), *_ in groups}
-    turns_deg = {end.stone: end.turn_deg or 0.0 for end in run.stones}
-    while True:
-        built, gone = build_up([list(lies.items())], mu, PATIENT), set[int]()
-        for block, corners in lies.items():
-            lay = replace(as_planned(corners), size=planned[owner[block]].size)
-            now = moved(lay, built.outlines[block])
-            if block in planned and astray(now, lay):
-                now, lay = replace(now, angle_deg=now.angle_deg + turns_deg[block]), planned[block]
-            if astray(now, lay):
-                gone.add(block)
-        if not gone or gone & planned.keys():
-            break
-        lies = {i: corners for i, corners in lies.items() if i not in gone}
-    tilts = () if gone else tilt_of(built, (TILT,)) or ()
-    alphas = [one.alpha for one in tilts if one.alpha is not None]
-    return min(alphas) / mu if alphas else 0.0

@@ -18,7 +18,9 @@ from drystone.kernels.raster import wrap_deg
 from drystone.model.builder import BuilderErrors, as_planned, put_down_with, stratified
 from drystone.model.outlines import Outlined
 from drystone.model.wall import Wall, outlined
-from drystone.physics.building import BuildSettings, build_up, tilt_of
+from drystone.physics.building import ROUNDED, BuildSettings, build_up, tilt_of
+from drystone.physics.scatter import Variation
+from drystone.physics.tilt import TiltSettings
 from drystone.settle.putting import astray, bare_wall, fallen_share, lost
 from drystone.settle.settings import SettleSettings
 
@@ -38,6 +40,11 @@ IN_ENGINE = BuildSettings(
     longest_rest=3.0,
 )
 """How the engine is asked: whether stones go astray by percents, sooner than to the last digit."""
+
+PATIENT = replace(IN_ENGINE, longest_rest=20.0, apart_share=0.0)
+TILT = Variation("as built", ROUNDED, TiltSettings(coarse=0.13, fine=0.02, longest_hold=20))
+"""How a wall as it was built is let go, as it lies and all at once, and tilted: stones that rest at
+a few points go on to roll for a while, and errors of percents leave no digits to look for."""
 
 
 @dataclass(frozen=True)
@@ -171,10 +178,9 @@ def rehearse_in_engine(
     """Build a wall once with the same errors in a rigid-body engine (extra `physics`)."""
     put = errors_of(groups, errors, rng)
     found = build_up([[(i, one.corners) for i, one in group] for group in put], mu, IN_ENGINE)
-    pairs = [(planned, put) for (planned, *_), (put, *_) in zip(groups, put, strict=True)]
     ends = [
         end_of(block, as_planned(corners), moved(built, found.outlines[block]))
-        for (_, corners), (block, built) in pairs
+        for ((_, corners), *_), ((block, built), *_) in zip(groups, put, strict=True)
     ]
     fallen = {end.stone for end in ends if end.fallen}
     lies = tuple((i, corners) for i, corners in found.outlines.items() if i not in fallen)
@@ -182,3 +188,30 @@ def rehearse_in_engine(
         return RehearsalRun(tuple(ends), lies)
     alphas = [one.alpha for one in tilt_of(found) or () if one.alpha is not None]
     return RehearsalRun(tuple(ends), lies, min(alphas) / mu if alphas else None)
+
+
+def tilt_as_built(groups: Groups, run: RehearsalRun, mu: float = 0.58) -> float:
+    """Return by how much what has not fallen of a wall may be tilted, over mu: the smaller side.
+
+    Its outlines as they lie are let go in the rigid-body engine (extra `physics`) and tilted from
+    where they come to rest.  0 where a stone falls then: it ends far from where it lay, and from
+    where it is planned.  Wedges alone may be lost.
+    """
+    lies, owner = dict(run.blocks), {i: group[0][0] for group in groups for i, _ in group}
+    planned = {stone: as_planned(corners) for (stone, corners), *_ in groups}
+    turns_deg = {end.stone: end.turn_deg or 0.0 for end in run.stones}
+    while True:
+        built, gone = build_up([list(lies.items())], mu, PATIENT), set[int]()
+        for block, corners in lies.items():
+            lay = replace(as_planned(corners), size=planned[owner[block]].size)
+            now = moved(lay, built.outlines[block])
+            if block in planned and astray(now, lay):
+                now, lay = replace(now, angle_deg=now.angle_deg + turns_deg[block]), planned[block]
+            if astray(now, lay):
+                gone.add(block)
+        if not gone or gone & planned.keys():
+            break
+        lies = {i: corners for i, corners in lies.items() if i not in gone}
+    tilts = () if gone else tilt_of(built, (TILT,)) or ()
+    alphas = [one.alpha for one in tilts if one.alpha is not None]
+    return min(alphas) / mu if alphas else 0.0
