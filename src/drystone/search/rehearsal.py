@@ -194,8 +194,8 @@ def tilt_as_built(groups: Groups, run: RehearsalRun, mu: float = 0.58) -> float:
     """Return by how much what has not fallen of a wall may be tilted, over mu: the smaller side.
 
     Its outlines as they lie are let go in the rigid-body engine (extra `physics`) and tilted from
-    where they come to rest.  0 where a stone falls then: it ends far from where it lay, and from
-    where it is planned.  Wedges alone may be lost.
+    where they come to rest.  0 where they do not, or a stone falls: it ends far from where it lay,
+    and from where it is planned.  Wedges alone may be lost.
     """
     lies, owner = dict(run.blocks), {i: group[0][0] for group in groups for i, _ in group}
     planned = {stone: as_planned(corners) for (stone, corners), *_ in groups}
