@@ -179,8 +179,13 @@ def test_a_wall_as_it_was_built_is_tilted():
     assert tilt_as_built([*column, [(2, box(90.0, 0.0, 5.0, 5.0))]], two) == 0
 
 
-def test_what_goes_into_its_planned_place_has_not_fallen():
+def test_what_goes_a_short_way_or_into_its_planned_place_has_not_fallen():
     pytest.importorskip("pymunk")
+    # Far for the small stone, and a seventh of its own size for the large one.
+    small, large = [(1, box(0.0, 0.0, 20.0, 20.0))], [(2, box(60.0, 8.0, 80.0, 40.0))]
+    run = rehearse([small, large], NONE, np.random.default_rng(0))
+    run = replace(run, blocks=(*small, *large))
+    assert tilt_as_built([small, large], run) > 0.5
     planned, high = [[(1, box(0.0, y))] for y in (0.0, 10.0)]
     run = replace(rehearse([planned], NONE, np.random.default_rng(0)), blocks=tuple(high))
     assert tilt_as_built([planned], run) == pytest.approx(1.0, abs=0.1)

@@ -29,8 +29,8 @@ MARGIN = 1.25
 FALL, FALL_OF_MANY, MANY = 19.0, 4.0, 80
 """A stone that would fall in all trials is laid when it is larger than so many mean stones.
 
-So in one of twenty trials one of 0.95 of the mean size may fall.  With more than :data:`MANY`
-stones a wall hardly ever stays whole, and is to be finished.
+So it may fall in one of twenty trials when it has 0.95 of the mean area.  With more than
+:data:`MANY` stones a wall hardly ever stays whole, and is to be finished.
 """
 
 KNOWN_BYTES = 1 << 27
