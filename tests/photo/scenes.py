@@ -41,22 +41,19 @@ def outline(angle_deg, x, y, side):
     return square @ np.array([[cos, sin], [-sin, cos]]) + (x, y)
 
 
-def photograph(
-    to_photo, size_px, placed, *, dictionary="aruco", border=1.3, blur_px=0.7, noise=3.0, finer=2
-):
-    """Render markers on grey ground; each px is the mean of finer x finer samples.
+def photograph(to_photo, size_px, placed, *, dictionary="aruco", blur_px=0.7):
+    """Render markers on grey ground; each px is the mean of 2 x 2 samples.
 
     `placed` has (id, angle_deg, x, y, side) for each marker: metres, upper left corner.
     """
     family, across = BITS[dictionary]
     family = cv2.aruco.getPredefinedDictionary(family)
-    (width, height), module = size_px, 20  # px of the paper
-    shown = np.full((height * finer, width * finer), 105.0, np.float32)
+    (width, height), module, edge = size_px, 20, 26  # px of the paper
+    shown = np.full((height * 2, width * 2), 105.0, np.float32)
     # Of cv2 the centres of pixels have whole coordinates.
-    finely = np.array([[finer, 0, -0.5], [0, finer, -0.5], [0, 0, 1]])
+    finely = np.array([[2, 0, -0.5], [0, 2, -0.5], [0, 0, 1]])
     for marker_id, angle, x, y, side in placed:
         bits = cv2.aruco.generateImageMarker(family, marker_id, across * module)
-        edge = round(border * module)
         paper = np.pad(np.where(bits > 127, 225.0, 35.0), edge, constant_values=225.0)
         origin, right, _, down = outline(angle, x, y, side / (across * module))
         to_ground = np.eye(3)
@@ -66,16 +63,11 @@ def photograph(
             paper.astype(np.float32), finely @ to_photo @ to_ground @ centres, shown.shape[::-1],
             shown, cv2.INTER_NEAREST, cv2.BORDER_TRANSPARENT,
         )  # fmt: skip
-    shown = light(shown).reshape(height, finer, width, finer).mean(axis=(1, 3))
-    shown = cv2.GaussianBlur(shown, (0, 0), blur_px)
-    shown = 255.0 * (1.055 * (shown / 255.0) ** (1 / 2.4) - 0.055)
-    shown += np.random.default_rng(5).normal(0.0, noise, shown.shape)
+    light = ((shown / 255.0 + 0.055) / 1.055) ** 2.4  # linear, as a lens blurs it
+    light = cv2.GaussianBlur(light.reshape(height, 2, width, 2).mean(axis=(1, 3)), (0, 0), blur_px)
+    shown = 255.0 * (1.055 * light ** (1 / 2.4) - 0.055)
+    shown += np.random.default_rng(5).normal(0.0, 3.0, shown.shape)
     return np.repeat(np.clip(np.round(shown), 0, 255).astype(np.uint8)[..., None], 3, axis=2)
-
-
-def light(grey):
-    """Linear light of grey values of sRGB: what a lens blurs."""
-    return 255.0 * ((grey / 255.0 + 0.055) / 1.055) ** 2.4
 
 
 def distance_error_percent(view, to_photo, width_m, height_m):

@@ -1,6 +1,7 @@
 """Markers in photographs, and the sheets on which they are printed."""
 
 import sys
+from itertools import product
 
 import cv2
 import numpy as np
@@ -116,6 +117,8 @@ def test_a_sheet_has_its_markers_in_the_corners_of_the_page():
     assert layout.corners_m(2)[2] == pytest.approx([0.195, 0.282])
     assert [layout.group(one) for one in (0, 3, 4)] == [0, 0, 1]
     assert parse_layout("A4:").size_m == 0.05
+    small = parse_layout("A4", printed=0.97)
+    assert small.corners_m(2) == pytest.approx(0.97 * layout.corners_m(2))
     with pytest.raises(UsageError, match="fit on A4") as caught:
         sheet_positions_m("A4", 0.09)
     largest = int(caught.value.cure.split()[1])
@@ -138,10 +141,9 @@ def test_single_markers_have_a_size_and_no_place_and_fit_on_a_page():
             parse_layout(text)
 
 
-@pytest.mark.parametrize("page", PAGES_MM)
-def test_the_white_border_is_a_square_and_a_half_wide(page):
-    width, height = PAGES_MM[page]
-    for size_mm in (10, 30, 50, 70):
+def test_the_white_border_is_a_square_and_a_half_wide():
+    for page, size_mm in product(PAGES_MM, (10, 30, 50, 70)):
+        width, height = PAGES_MM[page]
         places = sheet_positions_m(page, size_mm / 1000) * 1000
         low, high = places.min(axis=0), places.max(axis=0) + size_mm
         border = 1.5 * size_mm / 6

@@ -16,13 +16,9 @@ APART = ((0, 10.0, -0.14, -0.10, SIDE), (2, 95.0, 0.14, 0.05, SIDE))
 SHEET = parse_layout("A4:50mm")
 
 
-def sheet_on_ground(ids=(0, 1, 2, 3), angle=0.0):
+def sheet_on_ground(ids=(0, 1, 2, 3)):
     """The sheet with its middle at 0, 0."""
-    cos, sin = np.cos(np.deg2rad(angle)), np.sin(np.deg2rad(angle))
-    turn = np.array([[cos, sin], [-sin, cos]])
-    return [
-        (one, angle, *((SHEET.corners_m(one)[0] - (0.105, 0.1485)) @ turn), SIDE) for one in ids
-    ]
+    return [(one, 0.0, *(SHEET.corners_m(one)[0] - (0.105, 0.1485)), SIDE) for one in ids]
 
 
 def seen(to_photo, placed, noise_px=0.05):
@@ -34,33 +30,20 @@ def seen(to_photo, placed, noise_px=0.05):
     )
 
 
-def view_of(side_px, tilt_deg, placed, layout, reach):
-    """Photograph markers that are side_px wide in the middle, and look for the view."""
-    size = (round(reach[0] / SIDE * side_px), round(reach[1] / SIDE * side_px))
-    focal = 1.2 * size[0]
-    to_photo = camera(
-        focal, size, tilt_deg=tilt_deg, turn_deg=7.0, distance_m=focal * SIDE / side_px
-    )
-    found = find_markers(photograph(to_photo, size, placed))
-    assert len(found) == len(placed)
-    return scale_and_view(found, layout, size), to_photo
-
-
-TWO = [(0, 10.0, -0.09, -0.06, SIDE), (7, 100.0, 0.09, 0.02, SIDE)]
-
-
 @pytest.mark.parametrize(
-    ("side_px", "tilt_deg", "single", "sheet"), [(60, 30.0, 0.5, 0.2), (150, 0.0, 0.25, 0.07)]
+    ("side_px", "tilt_deg", "most_percent"), [(60, 30.0, 0.5), (150, 0.0, 0.25)]
 )
-def test_markers_measure_the_ground(side_px, tilt_deg, single, sheet):
-    view, to_photo = view_of(side_px, tilt_deg, TWO, MarkerLayout(SIDE), (0.26, 0.2))
-    assert distance_error_percent(view, to_photo, 0.2, 0.15) < single
+def test_photographed_markers_measure_the_ground(side_px, tilt_deg, most_percent):
+    size = round(0.26 / SIDE * side_px), round(0.2 / SIDE * side_px)
+    focal, away = 1.2 * size[0], {"tilt_deg": tilt_deg, "turn_deg": 7.0}
+    to_photo = camera(focal, size, distance_m=focal * SIDE / side_px, **away)
+    two = [(0, 10.0, -0.09, -0.06, SIDE), (7, 100.0, 0.09, 0.02, SIDE)]
+    found = find_markers(photograph(to_photo, size, two))
+    view = scale_and_view(found, MarkerLayout(SIDE), size)
+    assert distance_error_percent(view, to_photo, 0.2, 0.15) < most_percent
     assert view.ids == (0, 7)
     assert view.residual_percent < 0.15
     assert tilt_deg or view.px_per_m == pytest.approx(side_px / SIDE, rel=0.002)
-    view, to_photo = view_of(side_px, tilt_deg, sheet_on_ground(), SHEET, (0.3, 0.4))
-    assert distance_error_percent(view, to_photo, 0.25, 0.35) < sheet
-    assert view.residual_mm < 0.1
 
 
 def test_a_sheet_agrees_with_opencv():
@@ -74,6 +57,8 @@ def test_a_sheet_agrees_with_opencv():
     maps = (view.photo_to_ground, np.linalg.inv(theirs))
     ours, other = (pdist(apply(one, corners)) for one in maps)
     assert ours == pytest.approx(other, rel=2e-5)
+    # Noise of .2 px along each axis, at about 1700 px a metre.
+    assert 0.05 < view.residual_mm < 0.2
 
 
 @pytest.mark.parametrize("angle", [80.0, 180.0, 275.0])
@@ -105,16 +90,6 @@ def test_two_markers_of_a_sheet_are_enough_and_two_sheets_lie_anywhere():
     view = scale_and_view(seen(to_photo, [*sheet_on_ground(), *other]), layout, SIZE)
     assert view.ids == (0, 1, 2, 3, 4, 5)
     assert distance_error_percent(view, to_photo, 0.3, 0.3) < 0.1
-
-
-def test_a_print_of_97_percent_is_measured_with_its_check_line():
-    to_photo = camera(1200, SIZE, distance_m=0.7)
-    small = [(one, a, 0.97 * x, 0.97 * y, 0.97 * s) for one, a, x, y, s in sheet_on_ground()]
-    found = seen(to_photo, small)
-    wrong = scale_and_view(found, SHEET, SIZE)
-    assert distance_error_percent(wrong, to_photo, 0.2, 0.2) == pytest.approx(3.1, abs=0.1)
-    view = scale_and_view(found, parse_layout("A4", printed=0.97), SIZE)
-    assert distance_error_percent(view, to_photo, 0.2, 0.2) < 0.1
 
 
 def code_of(found, layout=None, size=SIZE):

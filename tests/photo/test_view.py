@@ -16,36 +16,29 @@ SIZE, MOST_PX = (640, 480), 10**7
 PLACED = ((3, 15.0, -0.12, -0.08, SIDE), (11, 80.0, 0.12, 0.05, SIDE))
 TO_PHOTO = camera(800, SIZE, tilt_deg=30.0, distance_m=0.5)
 
-
-@pytest.fixture(scope="module")
-def shown():
-    return photograph(TO_PHOTO, SIZE, PLACED)
-
-
-@pytest.fixture(scope="module")
-def view():
-    corners = [FoundMarker(one, apply(TO_PHOTO, outline(*lies)), "aruco") for one, *lies in PLACED]
-    return scale_and_view(tuple(corners), MarkerLayout(SIDE), SIZE)
+SHOWN = photograph(TO_PHOTO, SIZE, PLACED)
+CORNERS = [FoundMarker(one, apply(TO_PHOTO, outline(*lies)), "aruco") for one, *lies in PLACED]
+VIEW = scale_and_view(tuple(CORNERS), MarkerLayout(SIDE), SIZE)
 
 
-def test_points_go_where_they_are_said_to_go(shown, view):
-    values, px_per_m, _, from_photo = rectify(shown, replace(view, px_per_m=1500.0), MOST_PX)
+def test_points_go_where_they_are_said_to_go():
+    values, px_per_m, _, from_photo = rectify(SHOWN, replace(VIEW, px_per_m=1500.0), MOST_PX)
     assert px_per_m == 1500.0
     found = find_markers(values)
     apart = outline(*PLACED[0][1:]).mean(axis=0) - outline(*PLACED[1][1:]).mean(axis=0)
     seen = found[0].corners_px.mean(axis=0) - found[1].corners_px.mean(axis=0)
     assert np.hypot(*seen) == pytest.approx(1500.0 * np.hypot(*apart), abs=0.5)
-    for one, of_photo in zip(found, find_markers(shown), strict=True):
+    for one, of_photo in zip(found, find_markers(SHOWN), strict=True):
         sides = one.corners_px - np.roll(one.corners_px, 1, axis=0)
         assert np.hypot(*sides.T) == pytest.approx(np.full(4, 75.0), abs=0.4)
         moved = apply(from_photo, of_photo.corners_px)
         assert np.abs(moved - one.corners_px).max() < 0.5
-        on_ground = apply(view.photo_to_ground, of_photo.corners_px)
+        on_ground = apply(VIEW.photo_to_ground, of_photo.corners_px)
         assert moved == pytest.approx(on_ground * 1500.0, abs=1e-6)
 
 
-def test_all_of_the_photo_is_shown_and_nothing_else_in_a_size_that_is_bounded(shown, view):
-    values, _, inside, from_photo = rectify(np.full_like(shown, 200), view, MOST_PX)
+def test_all_of_the_photo_is_shown_and_nothing_else_in_a_size_that_is_bounded():
+    values, _, inside, from_photo = rectify(np.full_like(SHOWN, 200), VIEW, MOST_PX)
     corners = apply(from_photo, np.array([[0.0, 0.0], [640, 0], [640, 480], [0, 480]]))
     height, width = inside.shape
     assert values.shape == (height, width, 3)
@@ -54,9 +47,9 @@ def test_all_of_the_photo_is_shown_and_nothing_else_in_a_size_that_is_bounded(sh
     drawn = cv2.contourArea(corners.astype(np.float32))
     assert inside.sum() == pytest.approx(drawn, rel=0.005)
     assert (values[~inside] == 0).mean() > 0.98
-    _, px_per_m, inside, _ = rectify(shown, view, max_px=50_000)
+    _, px_per_m, inside, _ = rectify(SHOWN, VIEW, max_px=50_000)
     assert inside.size <= 50_000 * 1.02
-    assert px_per_m < view.px_per_m
+    assert px_per_m < VIEW.px_per_m
 
 
 def from_above(picture, px_per_m):

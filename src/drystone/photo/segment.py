@@ -24,6 +24,15 @@ _FLOOR_SHARE = 2e-4
 ROUGH = 6.0
 """What a ground varies in CIELAB, robust standard deviation, that is no cloth, wood or gravel."""
 
+VARIED = 4.0
+"""The same from which its grain hides stones of about its colour."""
+
+_GRAIN_PX = 4
+"""So far the picture is blurred to see these."""
+
+_HIDDEN, _HIDDEN_SHARE = 4.0, 0.125
+"""Distance from the blurred ground, in standard deviations, and least share of a usual stone."""
+
 _HORN = 0.12
 """Half the thickness of ends that are no stone, over that of the stone."""
 
@@ -134,8 +143,10 @@ def segment(
     found, cut, small, least_px = _sorted_out(labels, usable | papers, min_area_px)
     if not found.any():
         raise _no_stones(len(shapes(cut, EDGE)), model)
-    causes = {SHADOW: shadows, FAINT: unlike & ~foreground}
     known = stone | (labels > 0)
+    hidden = _hidden(model, known, usable, found) & ~shadows
+    unlike, faint = unlike | hidden, (unlike & ~foreground) | hidden
+    causes = {SHADOW: shadows, FAINT: faint}
     # Stones of which a part, but not all, has the colour of shaded ground.
     body = ndimage.binary_opening(alike & (found > 0), iterations=3)
     share = np.bincount(found[body], minlength=found.max() + 1) / np.bincount(found.ravel())
@@ -281,6 +292,23 @@ def lost(
             chosen &= ~near
         found += shapes(np.where(chosen[pieces], pieces, 0), why)
     return tuple(found)
+
+
+def _hidden(model: GroundModel, known: Mask, usable: Mask, found: NDArray[np.uint16]) -> Mask:
+    """Return what differs from a ground of coarse grain where that is blurred, as large as stones.
+
+    Its px are as far from its colour as those of a stone of about that colour.
+    """
+    if model.spread.max() <= VARIED:
+        return np.zeros_like(known)
+    away = ndimage.gaussian_filter(model.lab, _GRAIN_PX, axes=(0, 1)) - model.colour
+    spread = 1.48 * np.median(np.abs(away[usable & (model.distance < _HIDDEN)]), axis=0)
+    far = np.linalg.norm(away / np.maximum(spread, 0.8), axis=-1) > _HIDDEN
+    clear = usable & ~ndimage.binary_dilation(known, iterations=3 * _GRAIN_PX)
+    pieces, _ = ndimage.label(ndimage.binary_opening(far & clear, iterations=_GRAIN_PX))
+    large = np.bincount(pieces.ravel()) >= _HIDDEN_SHARE * np.median(np.bincount(found.ravel())[1:])
+    large[0] = False
+    return np.asarray(large[pieces])
 
 
 def refine_outlines(lab: Planes, stone: Mask, usable: Mask) -> Mask:

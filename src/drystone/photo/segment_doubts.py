@@ -9,7 +9,7 @@ from skimage.measure import regionprops
 
 from drystone.errors import Notice
 from drystone.model.stone_size import sizes_of
-from drystone.photo.segment import EDGE, PAPER, FoundStones, stones_at
+from drystone.photo.segment import EDGE, FAINT, PAPER, VARIED, FoundStones, stones_at
 
 _LOW_CONTRAST = 8.0
 """Distance in CIELAB from the ground below which an outline is not to be relied on."""
@@ -31,14 +31,14 @@ Photographs of river beds, walls and rooms have .8 to 4.7, stones on tarpaulin, 
 and grass 6.2 and more."""
 _LITTLE, _VERY_LITTLE = 0.05, 0.01
 """Shares of the photograph that are stone, least on varied ground and on any."""
-_VARIED = 4.0
-"""What a ground varies in CIELAB, robust standard deviation, that is more than cloth or wood."""
 _UNEVEN = 0.85
 """How much darker the darkest place of the ground is lit: beyond, stones there get lost."""
 _SHEET = 0.35
 """Share of the photograph from which on a stone may be the sheet that stones lie on."""
 _LEFT_OUT, _LEFT_OUT_SHARE = 2.0, 0.1
 """What was left out over what was found, and over the photograph, that is more than some stones."""
+_FAINT_SHARE = 0.25
+"""What hardly differs from the ground over what was found: beyond, stones may be missed."""
 _FEW = 3
 """So many stones are looked at one by one."""
 
@@ -211,7 +211,7 @@ def verdict_of(found: FoundStones, doubts: Iterable[Doubt] = ()) -> tuple[str, .
             f"stone {int(areas.argmax()) + 1} takes up {percent:.0f} % of the photograph and may "
             "be the sheet that the stones lie on"
         )
-    if stone < (_LITTLE if varies > _VARIED else _VERY_LITTLE):
+    if stone < (_LITTLE if varies > VARIED else _VERY_LITTLE):
         reasons.append(
             f"only {100 * stone:.2g} % of the photograph was taken for stones, which may be paint, "
             "dirt or light"
@@ -221,6 +221,12 @@ def verdict_of(found: FoundStones, doubts: Iterable[Doubt] = ()) -> tuple[str, .
         reasons.append(
             f"{100 * left_out:.0f} % of the photograph differs from the ground and was left out, "
             f"{100 * stone:.0f} % was taken for stones"
+        )
+    faint = sum(one.area_px for one in found.left_out if one.why == FAINT) / shown
+    if faint > _FAINT_SHARE * stone:
+        reasons.append(
+            f"{100 * faint:.0f} % of the photograph may be stones that hardly differ from the "
+            f"ground, {100 * stone:.0f} % was taken for stones"
         )
     doubted = {one for doubt in doubts for one in doubt.stones}
     if found.count >= _FEW and len(doubted) > found.count / 2:
