@@ -182,20 +182,14 @@ def dust_labels(draw):
     return labels.astype(np.uint32) * np.uint32(draw(st.sampled_from([1, 0x1FFFFFFF])))
 
 
-def _boxes(height, width):
-    """Of pixels: top, left, bottom, right."""
-    tops, lefts = st.integers(0, height - 1), st.integers(0, width - 1)
-    sizes = st.integers(1, 8)
-    return st.tuples(tops, lefts, sizes, sizes).map(lambda b: (*b[:2], b[0] + b[2], b[1] + b[3]))
-
-
 @st.composite
 def holed_labels(draw):
     """Stones painted over each other, rings among them, empty or with loose stones inside."""
     height, width = draw(st.integers(3, 14)), draw(st.integers(3, 14))
     labels = np.zeros((height, width), np.uint32)
     for number in range(1, draw(st.integers(2, 9))):
-        top, left, bottom, right = draw(_boxes(height, width))
+        top, left = draw(st.integers(0, height - 1)), draw(st.integers(0, width - 1))
+        bottom, right = top + draw(st.integers(1, 8)), left + draw(st.integers(1, 8))
         labels[top:bottom, left:right] = number
         if draw(st.booleans()):
             labels[top + 1 : bottom - 1, left + 1 : right - 1] = draw(st.sampled_from([0, 50]))

@@ -30,13 +30,13 @@ from drystone.io.wall_image import write_labels
 from drystone.model.settings import range_text
 from drystone.planner.settings import METHODS
 from drystone.selection.policies.registry import BUILT_IN, PAPER
+from tests.pages import printed
 
 ROOT = Path(__file__).resolve().parents[1]
 MENU = sorted((ROOT / "docs").glob("*.md"))
 PAGES = [*sorted(ROOT.glob("*.md")), *MENU, *sorted((ROOT / "docs" / "evidence").glob("*.md"))]
 NAMES = [str(page.relative_to(ROOT)) for page in PAGES]
 
-BLOCK = re.compile(r"^```(\w+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 LINK = re.compile(r"\]\(([^)#\s]+)(#[^)\s]*)?\)")
 CODE_FILE = re.compile(r"`([\w/]+\.(?:py|pyx|pxd))`")
 TOCTREE = re.compile(r"^```\{toctree\}\n(.*?)^```$", re.MULTILINE | re.DOTALL)
@@ -136,18 +136,12 @@ def _options(parser):
     return rows
 
 
-def blocks(page, language):
-    """Return the fenced blocks of a page in one language."""
-    text = page.read_text(encoding="utf-8")
-    return [body for found, body in BLOCK.findall(text) if found == language]
-
-
 def command_lines(page):
     """Return the words of every drystone command in the shell blocks of a page.
 
     Of the README those in the text count too, when they have arguments.
     """
-    lines = "\n".join(blocks(page, "sh")).replace("\\\n", " ").splitlines()
+    lines = "\n".join(printed(page, "sh")).replace("\\\n", " ").splitlines()
     words = [shlex.split(line, comments=True) for line in lines]
     if page.name == "README.md":  # elsewhere in text they have placeholders
         text = page.read_text(encoding="utf-8")
@@ -207,7 +201,7 @@ def test_the_python_of_the_pages_for_users_runs(name, tmp_path, monkeypatch):
     made = generate.brick_stones(sizes, np.random.default_rng(1))
     write_labels(generate.lay_out(made), tmp_path / "stones.png")
     monkeypatch.chdir(tmp_path)
-    programs = blocks(ROOT / name, "python")
+    programs = printed(ROOT / name, "python")
     assert programs or name != "README.md"
     for program in programs:
         exec(compile(program, name, "exec"), {})  # noqa: S102 - our own document
@@ -304,7 +298,7 @@ def test_every_property_of_a_plan_is_described_and_the_example_is_valid():
     json.loads(schema, object_hook=lambda part: names.update(part.get("properties", ())) or part)
     assert "steps" in names
     assert {name for name in names if f"`{name}`" not in text} == set()
-    (example,) = blocks(page, "json")
+    (example,) = printed(page, "json")
     plan = plan_from_json(json.loads(example))
     assert [step.kind for step in plan.steps] == ["stone", "stone", "wedge"]
 

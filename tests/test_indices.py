@@ -77,12 +77,10 @@ def test_of_equals_the_higher_neighbour_and_the_first_joint_are_taken():
     assert joints_below(landscape, Box(15, 40, 8, 11), 0) == (None, None)
 
 
-EMPTY = Landscape.of(Wall.empty(Site(40, 20)))
-
-
 def test_boundary_stones_are_nearer_to_an_end_than_the_narrowest_is_wide():
+    empty = Landscape.of(Wall.empty(Site(40, 20)))
     for left, right, near in ((0, 5, True), (4, 9, True), (5, 9, False), (31, 36, True)):
-        assert is_boundary(EMPTY, Box(left, right, 0, 3), narrowest_px=5) is near
+        assert is_boundary(empty, Box(left, right, 0, 3), narrowest_px=5) is near
 
 
 def test_names_are_those_of_the_paper_and_boundary_stones_are_judged_by_is():

@@ -9,30 +9,25 @@ from drystone.errors import PlanError
 from drystone.whole_files import remove_parts, write_whole
 
 
-def test_an_interrupt_leaves_nothing_behind(tmp_path, monkeypatch):
-    def interrupt(*_):
-        assert len(list(tmp_path.iterdir())) == 1
-        raise KeyboardInterrupt
-
-    for place in ("fsync", "replace"):
-        with monkeypatch.context() as patch:
-            patch.setattr(f"os.{place}", interrupt)
-            with pytest.raises(KeyboardInterrupt):
-                write_whole(tmp_path / "a.txt", b"one")
-        assert list(tmp_path.iterdir()) == []
-
-
-def test_a_full_disk_names_the_file_and_leaves_it_as_it_was(tmp_path, monkeypatch):
-    def full(_):
-        raise OSError(28, "No space left on device")
-
-    path = tmp_path / "a.txt"
+def test_a_file_that_cannot_be_written_is_as_it_was_and_a_full_disk_names_it(tmp_path, monkeypatch):
+    path, full = tmp_path / "a.txt", OSError(28, "No space left on device")
     path.write_bytes(b"one")
-    monkeypatch.setattr("os.fsync", full)
-    with pytest.raises(PlanError, match=r"E206.*No space left") as coded:
-        write_whole(path, b"two")
-    assert coded.value.where == str(path)
-    assert [(one.name, one.read_bytes()) for one in tmp_path.iterdir()] == [("a.txt", b"one")]
+    for place, raised in (
+        ("fsync", KeyboardInterrupt),
+        ("replace", KeyboardInterrupt),
+        ("fsync", full),
+    ):
+
+        def stop(*_, error=raised):
+            assert len(list(tmp_path.iterdir())) == 2
+            raise error
+
+        with monkeypatch.context() as patch:
+            patch.setattr(f"os.{place}", stop)
+            with pytest.raises((KeyboardInterrupt, PlanError)) as caught:
+                write_whole(path, b"two")
+        assert [(one.name, one.read_bytes()) for one in tmp_path.iterdir()] == [("a.txt", b"one")]
+    assert str(caught.value).startswith(f"E206 {path}: the file cannot be written (No space left")
     with pytest.raises(PlanError, match=r"b\.txt"):
         write_whole(path / "b.txt", b"one")
 

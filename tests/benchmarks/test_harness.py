@@ -15,21 +15,21 @@ from drystone_lab.table import Table
 from drystone_lab.walls import BRICKS
 
 ROOT = Path(__file__).parents[2]
-SPEED = ROOT / "docs" / "evidence" / "speed.md"
-ONE = Table("One", ("a",), ((1,),))
 
 
 def test_of_the_page_what_is_not_marked_stays_and_every_table_has_its_place():
     assert doctest.testmod(page).failed == 0
     text = "before\n<!-- table one -->\nold\n<!-- end -->\nafter\n"
-    written = page.rewritten(text, {"one": ONE})
+    one = {"one": Table("One", ("a",), ((1,),))}
+    written = page.rewritten(text, one)
     assert written.startswith("before\n<!-- table one -->\n**One**")
     assert written.endswith("\n<!-- end -->\nafter\n")
     assert "old" not in written
-    assert page.rewritten(written, {"one": ONE}) == written
+    assert page.rewritten(written, one) == written
     with pytest.raises(KeyError, match="two"):  # it was not measured
-        page.rewritten(text.replace("one", "two"), {"one": ONE})
-    names = [name for name, _ in page.TABLE.findall(SPEED.read_text(encoding="utf-8"))]
+        page.rewritten(text.replace("one", "two"), one)
+    speed = (ROOT / "docs" / "evidence" / "speed.md").read_text(encoding="utf-8")
+    names = [name for name, _ in page.TABLE.findall(speed)]
     assert sorted(names) == sorted(["functions", "walls", "parts", "limits", "memory", "larger"])
 
 
@@ -43,10 +43,7 @@ def test_every_benchmark_runs_once():
     assert " passed" in ran.stdout
 
 
-MAKERS = [coursed_labels, irregular_labels]
-
-
-@pytest.mark.parametrize("make", MAKERS)
+@pytest.mark.parametrize("make", [coursed_labels, irregular_labels])
 @pytest.mark.parametrize("count", [10, 60, 300])
 def test_there_are_enough_stones_and_no_gaps(make, count):
     labels, again, other = (make(np.random.default_rng(seed), count) for seed in (3, 3, 2))

@@ -1,5 +1,3 @@
-"""Tables from what pytest-benchmark writes."""
-
 import json
 
 import pytest

@@ -40,8 +40,7 @@ def push(plan):
 
 def is_picture(path):
     """Read it; an all-white one is none."""
-    picture = imread(path)
-    return picture.ndim == 3 and bool(picture[..., :3].std() > 0.01)
+    return bool(imread(path)[..., :3].std() > 0.01)
 
 
 def test_a_plan_is_checked_from_its_own_folder(plan_copy, run, monkeypatch):
@@ -152,8 +151,7 @@ def test_what_fails_is_drawn(tamper, code, plan_copy, run):
         # An unstable wall may fall in many ways; in any of them this stone goes down.
         last = plan.stone_steps[-1].stone
         assert ("begins to fall" in view.title, last in view.concerned) == (True, True)
-        down = view.ended[last] - view.planned[last]
-        assert (down[:, 1] < -1.0).all()
+        assert (view.ended[last] - view.planned[last])[:, 1].max() < -1.0
 
 
 def test_a_stone_that_hangs_by_friction_is_drawn_where_it_hangs():
@@ -183,16 +181,6 @@ def test_a_picture_where_it_is_asked_for(plan_copy, tmp_path, run, monkeypatch):
     assert run("check", plan_copy, "--json").json()["picture"] is None
 
 
-def test_the_engine_is_told_how_deep_outlines_overlap(plan_copy, run, monkeypatch):
-    """The plan is one of pixels, whose outlines do overlap."""
-    pytest.importorskip("pymunk", reason=NO_ENGINE)
-    monkeypatch.setattr(check_command, "tilt_of", lambda _: None)
-    rewrite(plan_copy / "plan.json", push)
-    depth = run("check", plan_copy, "--json").json()["overlap_depth"]
-    assert depth > NOTEWORTHY_PX
-    assert "what overlaps cannot stay where it is" in run("check", plan_copy, "--physics").out
-
-
 def test_stones_with_other_bytes_are_named_as_such(plan_copy, run):
     """The same picture, saved anew."""
     path = plan_copy / "rubble.png"
@@ -208,12 +196,13 @@ def test_stones_with_other_bytes_are_named_as_such(plan_copy, run):
 
 
 def test_words_of_the_engine(plan_copy):
-    """Where the plan has no overlap it is the engine's doing that stones were pushed apart."""
+    """Where the plan has no overlap, nothing but the engine has pushed stones apart."""
     move, plan = BlockMove(3, 0.2, 0.01, 0.1, 0.46, fell=False), read_plan(plan_copy)
     built = BuildUp((move,), {}, (0.0,), (1, 2), None, 0.58)
     found = check_plan(plan, read_stones(plan_copy / "rubble.png"))
-    rows = dict(PhysicsCard(plan, replace(found, overlap_depth=0.0), built, None).rows())
-    assert rows["  pushed apart"].endswith("0.46 source px deep (stone 3): others had moved there")
+    for depth, why in ((NOTEWORTHY_PX, "what overlaps cannot stay"), (0.0, "others had moved")):
+        rows = dict(PhysicsCard(plan, replace(found, overlap_depth=depth), built, None).rows())
+        assert f"0.46 source px deep (stone 3): {why} " in rows["  pushed apart"]
     assert rows["  restless"].endswith("when the time of steps 1, 3 was up")
     for side in ("left", "right"):
         alpha = getattr(plan.metrics, f"alpha_{side}")

@@ -9,7 +9,7 @@ from typing import Any, cast
 
 import pytest
 
-from drystone.cli import keeping, main
+from drystone.cli import keeping
 from drystone.cli.keeping import EVERY_S, SHARE, Keeper
 from drystone.errors import PlanError
 from drystone.io.checkpoint import CHECKPOINT
@@ -20,10 +20,8 @@ from drystone.planner.events import Callbacks
 from drystone.search.plan_result import PlanResult
 from drystone.search.plan_wall import SoFar, plan_wall
 from drystone.search.state import Progress, SearchState
-from tests.cli.conftest import SIZE, UNTRIED, WALL, coarse, contents, plan_into, rewrite
+from tests.cli.conftest import SIZE, UNTRIED, WALL, contents, plan_into, rewrite
 from tests.planner.scenes import after_looks, greedy, rubble
-
-SEARCH = ("--wall", SIZE, "--scale", "1", "--seed", "1", "--budget", "3", *UNTRIED)
 
 
 def so_far(walls, merit=1.0, **more):
@@ -34,17 +32,10 @@ def so_far(walls, merit=1.0, **more):
     return SoFar(one, lambda: cast(PlanResult, one))
 
 
-@pytest.fixture
-def kept(monkeypatch):
-    """What is written, and nothing is."""
-    written = []
-    monkeypatch.setattr(Keeper, "_keep_plan", lambda *_: written.append("plan"))
-    monkeypatch.setattr(keeping, "write_checkpoint", lambda *_: written.append("search"))
-    return written
-
-
-def test_plans_are_kept_when_they_are_better_and_seldom(kept, tmp_path, monkeypatch):
-    now = 0.0
+def test_plans_are_kept_when_they_are_better_and_seldom(tmp_path, monkeypatch):
+    now, kept = 0.0, []
+    monkeypatch.setattr(Keeper, "_keep_plan", lambda *_: kept.append("plan"))
+    monkeypatch.setattr(keeping, "write_checkpoint", lambda *_: kept.append("search"))
     keeper = Keeper(tmp_path, {}, None, lambda: now)
     keeper.begin(None)
     assert kept == ["search"]
@@ -84,24 +75,6 @@ def test_plans_are_kept_when_they_are_better_and_seldom(kept, tmp_path, monkeypa
     assert kept == ["search", "search", "plan"]
 
 
-def test_a_full_disk_ends_no_search_and_is_told_once(rubble, tmp_path, run, monkeypatch):
-    whole, tried = run("plan", rubble, *SEARCH, "-o", tmp_path / "whole"), []
-
-    def full(*_):
-        tried.append(_)
-        raise PlanError("E206", "the file cannot be written (No space left on device).")
-
-    monkeypatch.setattr(keeping, "EVERY_S", 0.0)
-    monkeypatch.setattr(keeping, "SHARE", 1.0)
-    monkeypatch.setattr(Keeper, "_keep_plan", full)
-    ran = run("plan", rubble, *SEARCH, "-o", tmp_path / "full")
-    assert len(tried) > 1
-    assert (ran.code, ran.err.count("W130")) == (whole.code, 1)
-    assert "No space left" in ran.err
-    plans = [(tmp_path / name / "plan.json").read_bytes() for name in ("full", "whole")]
-    assert plans[0] == plans[1]
-
-
 @pytest.mark.parametrize(
     ("place", "more"),
     [("drystone.cli.planning.write_plan_folder", ()),
@@ -126,27 +99,6 @@ def test_a_wall_that_cannot_be_written_is_printed(place, more, rubble, tmp_path,
 
 class Killed(BaseException):
     """As a signal that nobody can catch."""
-
-
-def killed_at(walls):
-    def on_walls(_, found):
-        if found.walls >= walls:
-            raise Killed
-
-    return on_walls
-
-
-def test_pictures_of_an_earlier_plan_do_not_stay_beside_another(rubble, tmp_path, run, monkeypatch):
-    plan = ("plan", rubble, *SEARCH, "-o", tmp_path)
-    assert run(*plan, "--pareto").code in (0, 4)
-    (tmp_path / "mine.txt").write_text("mine")
-    monkeypatch.setattr(Callbacks, "on_walls", killed_at(2))
-    with pytest.raises(Killed):
-        run(*plan, "--overwrite", "--seed", "5")
-    assert (read_plan(tmp_path).seed, read_plan(tmp_path).stopped) == (5, "interrupted")
-    kept = {"plan.json", "settings.toml", "wall.png", "blocks.json", CHECKPOINT, "mine.txt"}
-    assert {path.name for path in tmp_path.iterdir()} == kept
-    assert run("check", tmp_path, "--stones", rubble).code == 0
 
 
 def test_the_photograph_is_beside_what_is_kept_too(tmp_path):
@@ -252,22 +204,8 @@ SEVEN = (
 
 @pytest.fixture(scope="module")
 def whole(rubble, tmp_path_factory):
-    """The folder of the whole search, not to be changed."""
+    """The folder of the whole search; not to be changed."""
     return plan_into(tmp_path_factory, rubble, *SEVEN)
-
-
-@pytest.fixture(scope="module")
-def killed(rubble, tmp_path_factory):
-    """The folder of the search when it is killed after five walls; not to be changed."""
-    folder = tmp_path_factory.mktemp("killed") / "out"
-    with coarse(), pytest.MonkeyPatch.context() as patch:
-        patch.setattr(keeping, "EVERY_S", 0.0)
-        patch.setattr(keeping, "SHARE", 1.0)
-        patch.setattr(Callbacks, "on_walls", killed_at(5))
-        with pytest.raises(Killed):
-            main(["plan", str(rubble), *SEVEN, "--seed", "1", "-o", str(folder)])
-    assert read_plan(folder).stopped == "interrupted"
-    return folder
 
 
 @pytest.fixture
@@ -327,11 +265,45 @@ def test_signals_at_the_end_lose_nothing(finished, rubble, tmp_path, run, monkey
     assert not (tmp_path / CHECKPOINT).exists()
 
 
-def test_a_killed_search_goes_on(search, holds, whole, killed, tmp_path, monkeypatch):
+def test_a_full_disk_ends_no_search_and_is_told_once(search, whole, tmp_path, monkeypatch):
+    tried = []
+
+    def full(*_):
+        tried.append(_)
+        raise PlanError("E206", "the file cannot be written (No space left on device).")
+
+    monkeypatch.setattr(keeping, "EVERY_S", 0.0)
+    monkeypatch.setattr(keeping, "SHARE", 1.0)
+    monkeypatch.setattr(Keeper, "_keep_plan", full)
+    ran = search(tmp_path)
+    assert (ran.code in (0, 4), len(tried) > 1, ran.err.count("W130")) == (True, True, 1)
+    assert "No space left" in ran.err
+    assert same(tmp_path, whole)
+
+
+def test_a_killed_search_goes_on(search, holds, finished, whole, tmp_path, monkeypatch):
     """With a smaller budget it ends where it is."""
-    names = ("on", "ended", "damaged")
-    on, ended, damaged = (shutil.copytree(killed, tmp_path / name) for name in names)
-    assert holds(on)
+
+    def killed(_, found):
+        if found.walls >= 5:
+            raise Killed
+
+    on, ended, damaged = (tmp_path / name for name in ("on", "ended", "damaged"))
+    (shutil.copytree(finished, on) / "pareto" / "01").mkdir(parents=True)
+    for name in ("pareto.png", "pareto/01/plan.json"):
+        (on / name).touch()
+    with monkeypatch.context() as patch:
+        patch.setattr(keeping, "EVERY_S", 0.0)
+        patch.setattr(keeping, "SHARE", 1.0)
+        patch.setattr(Callbacks, "on_walls", killed)
+        with pytest.raises(Killed):
+            search(on, "--overwrite")
+    # Pictures of an earlier plan do not stay beside another.
+    kept = {"plan.json", "settings.toml", "wall.png", "blocks.json", CHECKPOINT}
+    assert {path.name for path in on.iterdir()} == kept
+    assert (read_plan(on).stopped, holds(on)) == ("interrupted", True)
+    for copy in (ended, damaged):
+        shutil.copytree(on, copy)
     search(on).refused("E129")
     ran = search(on, "--resume")
     assert ran.err.startswith("drystone: going on after 5 walls\n")

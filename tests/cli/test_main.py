@@ -54,21 +54,16 @@ def test_errors_become_exit_codes(raised, code, said, run, monkeypatch):
             run("stones", "x.png", "--debug")
 
 
-@pytest.mark.parametrize("left", [True, False])
-def test_termination_ends_with_its_own_code(left, run, monkeypatch):
+def test_termination_ends_with_its_own_code(run, monkeypatch):
     before = signal.getsignal(signal.SIGTERM)
 
     def stop(_):
-        try:
+        with pytest.raises(KeyboardInterrupt):
             signal.raise_signal(signal.SIGTERM)
-        except KeyboardInterrupt:
-            if left:
-                raise
         return ExitCode.INTERRUPTED
 
     monkeypatch.setattr(command, "run", stop)
-    ran = run("stones", "x.png")
-    assert (ran.code, ran.err) == (143, "drystone: terminated\n" if left else "")
+    assert run("stones", "x.png").code == 143
     assert signal.getsignal(signal.SIGTERM) == before
 
 
@@ -78,37 +73,23 @@ def test_a_cure_names_options_that_the_command_has(run, monkeypatch, tmp_path):
     assert said in run("generate", "brick", "-o", tmp_path / "x.png").err
 
 
-@pytest.mark.parametrize(("option", "value"), [("--ruler", "-1,0,9,0=1m"), ("--wall", "-3x4")])
-def test_how_to_give_what_begins_with_a_minus(run, option, value):
-    ran = run("plan", "x.png", option, value)
-    assert (ran.code, f"begins with a minus so: {option}=-1." in ran.err) == (2, True)
-
-
-def in_a_shell(line):
+def in_a_shell(line, stdout=subprocess.PIPE):
     """Run a command line in a process of its own; what goes to stdout and stderr is kept."""
-    return subprocess.run(  # noqa: S602 - our own code
-        f"{sys.executable} -m drystone {line}",
-        shell=True,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    line = f"{sys.executable} -m drystone {line}"
+    kept = {"stdout": stdout, "stderr": subprocess.PIPE, "text": True}
+    return subprocess.run(line, shell=True, check=False, **kept)  # noqa: S602 - our own code
 
 
-def test_a_closed_output_is_no_error():
+def test_an_output_that_is_closed_or_whose_reader_goes_away_is_no_error():
     for line, code in (("settings mu >&- 2>&-", 0), ("settings m 2>&-", 2), ("settings m >&-", 2)):
         done = in_a_shell(line)
         assert (done.returncode, done.stdout) == (code, "")
         assert done.stderr.count("\n") == ("2>" not in line)
-
-
-def test_a_reader_that_goes_away_is_no_error():
     read, write = os.pipe()
     os.close(read)
-    words = [sys.executable, "-m", "drystone", "settings"]
-    done = subprocess.run(words, stdout=write, stderr=subprocess.PIPE, check=False)  # noqa: S603
+    done = in_a_shell("settings", stdout=write)
     os.close(write)
-    assert (done.returncode, done.stderr) == (0, b"")
+    assert (done.returncode, done.stderr) == (0, "")
 
 
 def test_libraries_that_print_by_themselves_are_silent(tmp_path):
@@ -138,7 +119,6 @@ def test_a_signal_that_becomes_an_error_is_a_signal(sent, code, said, run, monke
         assert (ran.code, ran.err) == (code, f"drystone: {said}\n")
 
 
-HIDDEN = argparse.SUPPRESS
 TASKS = ("first", "build", "judge", "study")
 COMMANDS = (
     "demo", "stones", "markers", "segment", "trace", "plan", "settings", "export", "check",
@@ -154,12 +134,11 @@ def test_help_loads_nothing_heavy():
         "    main(['--help'])\n"
         "finally:\n"
         "    heavy = {'numpy', 'scipy', 'matplotlib', 'rich', 'PIL', 'shapely', 'highspy'}\n"
-        "    assert not heavy & set(sys.modules)\n"
+        "    print(sorted(heavy & set(sys.modules)))\n"
     )
     words = [sys.executable, "-c", code]
-    done = subprocess.run(words, capture_output=True, text=True, check=False)  # noqa: S603
-    assert (done.returncode, done.stderr) == (0, "")
-    assert all(command in done.stdout for command in COMMANDS)
+    done = subprocess.run(words, capture_output=True, text=True, check=True)  # noqa: S603
+    assert done.stdout.endswith("\n[]\n")
 
 
 def test_all_commands_are_listed_by_tasks_on_one_screen():
@@ -175,7 +154,8 @@ def listed(*command):
     parser = build_parser(command)
     (commands,) = (one for one in parser._actions if isinstance(one.choices, dict))
     actions = commands.choices[command[0]]._actions
-    return [one.option_strings[0] for one in actions if one.option_strings and one.help != HIDDEN]
+    shown = [one for one in actions if one.help != argparse.SUPPRESS]
+    return [one.option_strings[0] for one in shown if one.option_strings]
 
 
 def test_help_lists_what_most_people_need():

@@ -5,7 +5,6 @@ import re
 import shlex
 
 import numpy as np
-import pytest
 from PIL import Image
 
 from tests.cli.conftest import UNTRIED
@@ -44,9 +43,8 @@ def photograph(path):
     return path
 
 
-@pytest.fixture
-def traced(tmp_path, monkeypatch):
-    """A folder, worked in, with a photograph and the trace as the page of outlines writes it."""
+def test_every_command_of_the_page_gives_what_it_says(tmp_path, monkeypatch, run):
+    """A photograph lies beside the trace that the page of outlines writes."""
     photograph(tmp_path / "wall.jpg")
     shapes = [
         {"label": "stone", "points": [(x / 2, y / 2) for x, y in corners], "group_id": None,
@@ -60,10 +58,6 @@ def traced(tmp_path, monkeypatch):
     }  # fmt: skip
     (tmp_path / "outlines.json").write_text(json.dumps(content))
     monkeypatch.chdir(tmp_path)
-    return tmp_path
-
-
-def test_every_command_of_the_page_gives_what_it_says(traced, run):
     page, section = "for-engineers.md", "From a photograph of a wall"
     commands = [shlex.split(line)[1:] for line in lines_of(page, "sh", section)]
     assert [words[0] for words in commands] == [
@@ -71,30 +65,16 @@ def test_every_command_of_the_page_gives_what_it_says(traced, run):
     ]  # fmt: skip
     told = [run(*words) for words in commands]
     assert [one.code for one in told] == [0] * len(told), [one.err for one in told]
-    assert (traced / "trace" / "outlines.html").exists()
+    assert (tmp_path / "trace" / "outlines.html").exists()
     assert "13 stones" in told[1].out
     assert "own weight           stands" in told[2].out
     assert set(lines_of(page, "text", section)) <= set(told[2].out.splitlines())
     assert "m wide" in told[2].out
     values = [re.search(r"^F_LR +(0\.\d+)", one.out, re.MULTILINE) for one in told[2:4]]
     assert values[0][1] == values[1][1]
-    assert (traced / "traced-analysis" / "report.html").exists()
+    assert (tmp_path / "traced-analysis" / "report.html").exists()
     photo = run("analyse", "wall.jpg")
     assert (photo.code, "for-engineers.md#from-a-photograph-of-a-wall" in photo.err) == (3, True)
-
-
-def test_following_the_hints_ends_with_a_number(traced, run):
-    """Do what each hint says, as it is printed, from the bare command on."""
-    asked, seen = ["analyse", str(traced / "outlines.json"), "--associative-only"], []
-    while (ran := run(*asked, *(seen[-1].split() if seen else ()))).code == 5:
-        hint = re.search(r"--close-gaps \w+", ran.err)
-        assert hint is not None, ran.err
-        assert hint[0] not in seen, "in a circle"
-        seen.append(hint[0])
-    assert ran.code == 0
-    value = re.search(r"^F_LR +([01]\.\d+)", ran.out, re.MULTILINE)
-    again = re.search(r"the same again: (--close-gaps \d+px)", ran.out)
-    assert f" {value[1]} " in run(*asked, *again[1].split()).out
 
 
 def test_the_photograph_becomes_a_wall_that_holds(tmp_path, monkeypatch, run):

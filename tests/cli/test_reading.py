@@ -2,12 +2,12 @@
 
 import json
 import os
+from itertools import product
 
 import numpy as np
 import pytest
 from PIL import Image
 
-from drystone.io.photo_beside import PhotoSidecar, write_sidecar
 from drystone.io.plan_json import read_plan
 from drystone.io.wall_image import read_wall_image
 from tests.cli.conftest import WALL
@@ -15,23 +15,18 @@ from tests.io import labelled
 from tests.io.test_walls import drawn
 
 SIZES = [(90, 40), (70, 42), (84, 38), (60, 44), (96, 36), (72, 40)]
-"""Of six blocks, px or mm."""
-QUICK = ["--method", "paper", "--quiet"]
+BOXES = [
+    labelled.box(x, y, x + width, y + height)
+    for (y, x), (width, height) in zip(product((10, 70), (10, 120, 230)), SIZES, strict=True)
+]
+"""The outlines of six blocks, side by side in two rows, px or mm."""
+
 WALL_M = ("--wall", "0.25mx0.12m")
-
-
-def boxes():
-    """The outlines of the six blocks, side by side in two rows."""
-    places = [(10 + 110 * (k % 3), 10 + 60 * (k // 3)) for k in range(len(SIZES))]
-    return [
-        labelled.box(x, y, x + width, y + height)
-        for (x, y), (width, height) in zip(places, SIZES, strict=True)
-    ]
 
 
 def planned(run, path, out, *options):
     """Plan a wall of the six blocks, check it, and read the plan."""
-    ran = run("plan", path, *options, *QUICK, "-o", out)
+    ran = run("plan", path, *options, "--method", "paper", "--quiet", "-o", out)
     assert ran.code in (0, 4), ran.err
     assert run("check", out, "--stones", path, "--json").json()["ok"]
     return read_plan(out)
@@ -41,7 +36,7 @@ def planned(run, path, out, *options):
     "reading", [{}, {"px_per_m": 800.0, "unit": "mm", "up": "z-back"}], ids=["plain", "told"]
 )
 def test_a_drawing_has_a_scale_and_its_plan_holds(tmp_path, run, reading):
-    path = labelled.written(tmp_path, "dxf", [("stones", ring) for ring in boxes()])
+    path = labelled.written(tmp_path, "dxf", [("stones", ring) for ring in BOXES])
     said = run("stones", path).out
     assert "2100 px a metre" in said
     assert "W119 the longer side of the median stone is 0.078 m" in said
@@ -52,25 +47,10 @@ def test_a_drawing_has_a_scale_and_its_plan_holds(tmp_path, run, reading):
     assert run("check", tmp_path / "out", "--json").json()["ok"]
 
 
-def test_px_of_an_image_are_not_drawn_again(tmp_path, run):
-    two = labelled.coco([("stone", ring) for ring in boxes()])
-    two["images"].append({"id": 2, "file_name": "2.jpg", "width": 340, "height": 130})
-    for stone in two["annotations"][2:]:
-        stone["image_id"] = 2
-    path = tmp_path / "coco.json"
-    path.write_text(json.dumps(two))
-    options = ("--image", "2.jpg", "--px-per-m", "1000")
-    plan = planned(run, path, tmp_path / "out", *WALL_M, *options)
-    assert plan.px_per_m == 1000.0
-    assert plan.source["reading"] == {"image": "2.jpg"}
-    assert (plan.source["width_px"], plan.source["stones"]) == (340, 4)
-    assert {step.stone for step in plan.stone_steps} <= {3, 4, 5, 6}
-
-
 def test_classes_and_frames_are_chosen_and_kept_in_the_plan(tmp_path, run):
     frame = labelled.box(2, 2, 338, 128)
     labels = [*["granite"] * 4, *["slate"] * 2, "granite"]
-    path = labelled.written(tmp_path, "labelme", zip(labels, [*boxes(), frame], strict=True))
+    path = labelled.written(tmp_path, "labelme", zip(labels, [*BOXES, frame], strict=True))
     for options, count in (
         ((), 6),
         (("--label", "slate"), 2),
@@ -79,20 +59,11 @@ def test_classes_and_frames_are_chosen_and_kept_in_the_plan(tmp_path, run):
     ):
         assert run("stones", path, *options, "--json").json()["stones"] == count
     run("stones", path, "--label", "marble").refused("granite, slate")
-    plan = planned(run, path, tmp_path / "out", "--label", "granite", "--wall", "300x120")
-    assert plan.source["reading"] == {"label": ["granite"]}
-
-
-def test_a_photograph_has_its_scale_beside_it(tmp_path, run):
-    out, labels = tmp_path / "out", np.zeros((130, 340), np.uint8)
-    for number, ((left, top), _, (right, bottom), _) in enumerate(boxes(), start=1):
-        labels[top:bottom, left:right] = number
-    Image.fromarray(labels).save(tmp_path / "stones.png")
-    write_sidecar(PhotoSidecar(340, 130, 1000.0), tmp_path)
-    assert planned(run, tmp_path, out, *WALL_M).px_per_m == 1000.0
-    shown = run("stones", tmp_path, "--json").json()
-    assert (shown["stones"], shown["px_per_m"]) == (6, 1000.0)
-    run("plan", tmp_path, *WALL_M, "--px-per-m", "900", *QUICK, "-o", out).refused("E131")
+    # Px of an image are not drawn again.
+    options = ("--label", "granite", "--px-per-m", "1000")
+    plan = planned(run, path, tmp_path / "out", *WALL_M, *options)
+    assert (plan.source["reading"], plan.px_per_m) == ({"label": ["granite"]}, 1000.0)
+    assert plan.source["stones"] == 4
 
 
 def test_outlines_are_analysed_measured_and_looked_at_and_the_scale_is_kept(tmp_path, run):
@@ -125,20 +96,17 @@ def test_options_of_reading_are_those_of_stones(command, tmp_path, run):
         run(command, blocks, *options).refused(f"{options[0]} has no meaning")
 
 
-def test_stones_are_converted_with_their_ids_and_scale(tmp_path, run):
+def test_stones_are_converted_with_their_ids_and_scale_or_refused(tmp_path, run):
     path, to = drawn("dxf", tmp_path), tmp_path / "to" / "labels.tif"
+    for name in ("labels.bmp", "stones.json", "labels"):
+        run("stones", path, "--labels", to.with_name(name)).refused("E139")
+    assert not to.parent.exists()
     first = run("stones", path, "--labels", to, "--json").json()
     again = run("stones", to, "--json").json()
     for name in ("stones", "total_area_px", "width_px", "height_px", "clusters", "px_per_m"):
         assert again[name] == first[name]
     assert "m high" in run("analyse", to, "--close-gaps", "1", "--associative-only").out
-
-
-def test_what_cannot_be_converted_is_refused_before_anything_is_written(tmp_path, run):
-    path, masks, to = drawn("labelme", tmp_path), tmp_path / "masks", tmp_path / "to"
-    for name in ("labels.bmp", "stones.json", "labels"):
-        run("stones", path, "--labels", to / name).refused("E139")
-    assert not to.exists()
+    masks = tmp_path / "masks"
     masks.mkdir()
     for number in (1, 2):
         mask = np.zeros((30, 40), np.uint8)

@@ -41,8 +41,9 @@ def test_regions_are_the_labels_and_every_corner_is_one(labels):
 
 
 @pytest.mark.parametrize("px_per_m", [None, 200.0])
-def test_wall_outlines_lie_where_the_plan_has_its_blocks(px_per_m):
-    made = example(0.5, px_per_m)
+@pytest.mark.parametrize("wall", [example, exact_example])
+def test_wall_outlines_lie_where_the_plan_has_its_blocks(wall, px_per_m):
+    made = wall(0.5, px_per_m)
     expected = (pair for group in plan_polygons(made.plan, made.stones) for pair in group)
     found = wall_outlines(made.wall)
     for block, corners in expected:

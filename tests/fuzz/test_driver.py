@@ -44,15 +44,15 @@ def found():
 
 
 KINDS = {
-    "raises": "LookupError", "leaves": "SystemExit", "spins": "time", "backtracks": "time",
-    "waits": "stuck", "eats": "memory", "eats_quietly": "memory", "dies": "crash SIGSEGV",
-    "prints": "output", "warns": "warning", "logs": "log", "starts": "process", "hides": "process",
-    "writes": "write", "removes": "write", "unpickles": "pickle", "connects": "network",
+    "raises": "LookupError", "leaves": "SystemExit", "backtracks": "time", "waits": "stuck",
+    "eats": "memory", "eats_quietly": "memory", "dies": "crash SIGSEGV", "prints": "output",
+    "warns": "warning", "logs": "log", "starts": "process", "writes": "write", "removes": "write",
+    "unpickles": "pickle", "connects": "network",
 }  # fmt: skip
 ELSEWHERE = {
     "backtracks": "re/__init__.py match", "prints": "stderr", "writes": "pathlib.py open",
-    "starts": "subprocess.py _execute_child", "hides": "subprocess.py _execute_child",
-    "removes": "pathlib.py unlink", "connects": "socket.py getaddrinfo",
+    "starts": "subprocess.py _execute_child", "removes": "pathlib.py unlink",
+    "connects": "socket.py getaddrinfo",
 }  # fmt: skip
 """Where the defects are that lie in libraries."""
 

@@ -24,7 +24,6 @@ from drystone.generate.layout import (
     is_whole,
     lay_out,
     polygon_area,
-    stones_of,
     whole_mask,
 )
 from drystone.generate.polygon import PolygonSettings, noisy_polygon, polygon_stones
@@ -52,7 +51,7 @@ IMPOSSIBLE = {
 
 
 @pytest.mark.parametrize("kind", IMPOSSIBLE)
-def test_impossible_settings(kind):
+def test_impossible_settings_are_refused(kind):
     for name, values in IMPOSSIBLE[kind].items():
         for value in values:
             with pytest.raises(UsageError, match="E130 generate"):
@@ -61,16 +60,16 @@ def test_impossible_settings(kind):
         BrickSettings(count=-1, halves=2)
 
 
-GENERATORS = [
-    (fourier_stones, FourierSettings(count=12, D2=0.2, largest_radius_px=50.0)),
-    (polygon_stones, PolygonSettings(count=12, noise=0.7)),
-    (polygon_stones, PolygonSettings(count=12, noise=0.3, convex=False)),
-    (brick_stones, BrickSettings(count=12, halves=3)),
-    (rubble_stones, RubbleSettings()),
-]
-
-
-@pytest.mark.parametrize(("generate", "settings"), GENERATORS)
+@pytest.mark.parametrize(
+    ("generate", "settings"),
+    [
+        (fourier_stones, FourierSettings(count=12, D2=0.2, largest_radius_px=50.0)),
+        (polygon_stones, PolygonSettings(count=12, noise=0.7)),
+        (polygon_stones, PolygonSettings(count=12, noise=0.3, convex=False)),
+        (brick_stones, BrickSettings(count=12, halves=3)),
+        (rubble_stones, RubbleSettings()),
+    ],
+)
 def test_whole_stones_are_numbered_from_one_and_read_back_from_the_picture(generate, settings):
     stones, same, other = (generate(settings, np.random.default_rng(seed)) for seed in (5, 5, 6))
     labels = lay_out(stones)
@@ -88,13 +87,17 @@ def test_whole_stones_are_numbered_from_one_and_read_back_from_the_picture(gener
 
 
 @repeatable()
-@given(st.lists(st.tuples(st.integers(1, 40), st.integers(1, 40)), min_size=1, max_size=25))
-def test_stones_never_touch_each_other_or_the_edge(sizes):
-    labels = lay_out(stones_of([np.ones(size, bool) for size in sizes]))
-    assert np.unique(labels).tolist() == list(range(len(sizes) + 1))
-    for stone in range(1, len(sizes) + 1):
-        near = ndimage.binary_dilation(labels == stone, np.ones((3, 3)), iterations=GAP_PX)
-        assert not (near & (labels != stone) & (labels > 0)).any()
+@given(
+    st.lists(st.tuples(st.integers(1, 40), st.integers(1, 40)), min_size=1, max_size=25),
+    st.sampled_from([1, 300, 4_000_000_000]),
+)
+def test_stones_keep_their_ids_and_never_touch_each_other_or_the_edge(sizes, first):
+    stones = tuple(Stone(i, np.ones(size, bool)) for i, size in enumerate(sizes, first))
+    labels = lay_out(StoneSet(stones))
+    assert np.unique(labels).tolist() == [0, *(stone.id for stone in stones)]
+    for stone in stones:
+        near = ndimage.binary_dilation(labels == stone.id, np.ones((3, 3)), iterations=GAP_PX)
+        assert not (near & (labels != stone.id) & (labels > 0)).any()
     labels[GAP_PX:-GAP_PX, GAP_PX:-GAP_PX] = 0
     assert not labels.any()
 
@@ -120,12 +123,7 @@ def test_stones_that_fit_into_no_image_are_refused_but_large_images_allowed():
     check_room(5, (9_996, 9_996), ("a", "b"), "test")
 
 
-def test_ids_of_any_stones_are_kept():
-    stones = StoneSet(tuple(Stone(one, np.ones((3, 5), bool)) for one in (300, 4_000_000_000)))
-    assert np.unique(lay_out(stones)).tolist() == [0, 300, 4_000_000_000]
-
-
-def test_bricks_and_polygons_without_noise_are_exact():
+def test_bricks_and_polygons_without_noise_are_exact_and_halves_lie_among_the_others():
     for generate, settings, shape in (
         (brick_stones, BrickSettings(count=7, aspect=2), (12, 24)),
         (brick_stones, BrickSettings(count=7, aspect=2.5), (12, 30)),
@@ -135,9 +133,6 @@ def test_bricks_and_polygons_without_noise_are_exact():
         stones = generate(settings, np.random.default_rng(0))
         assert [stone.mask.shape for stone in stones] == [shape] * 7
         assert all(stone.mask.all() for stone in stones)
-
-
-def test_halves_are_half_as_wide_and_lie_among_the_others():
     stones = brick_stones(BrickSettings(count=20, halves=8), np.random.default_rng(0))
     widths = [stone.mask.shape[1] for stone in stones]
     assert sorted(widths) == [18] * 8 + [36] * 20
@@ -170,20 +165,15 @@ def test_decay_follows_the_exponents():
     assert np.flatnonzero(at_once).tolist() == [3, 8]
 
 
-def test_phases_spread_over_the_whole_circle():
+def test_phases_and_radii_are_uniform():
     rng = np.random.default_rng(3)
     contours = [fourier_contour(30.0, FourierSettings(), rng) for _ in range(300)]
     third = [np.angle(np.fft.rfft(np.hypot(*contour.T))[3]) for contour in contours]
     assert np.histogram(third, bins=4, range=(-math.pi, math.pi))[0].min() > 45
-
-
-def test_radii_are_uniform():
     settings = FourierSettings(count=400, smallest_radius_px=10.0, largest_radius_px=50.0)
     stones = fourier_stones(settings, np.random.default_rng(2))
     radii = np.sqrt([stone.area_px / math.pi for stone in stones])
-    assert len(radii) == 400
-    assert 9.5 < radii.min() < 11
-    assert 49 < radii.max() < 51
+    assert (len(radii), 9.5 < radii.min() < 11, 49 < radii.max() < 51) == (400, True, True)
     assert radii.mean() == pytest.approx(30, abs=1.5)
     assert radii.std() == pytest.approx(40 / math.sqrt(12), abs=0.8)
 

@@ -35,6 +35,7 @@ def lay_open(root):
         path = root / file.address
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_bytes(CONTENTS[file.name])
+    return root
 
 
 def lay_down(folder, *names):

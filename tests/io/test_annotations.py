@@ -21,9 +21,6 @@ from tests.io.known_stones import HEIGHT, PIECES, STONES, WIDTH, close, compare,
 from tests.io.labelled import box
 from tests.io.pictures import codes, said, written
 
-EXACT = (1.0, 0.0, 0.0)
-"""Every pixel the same: outlines and truth both take the centres of pixels."""
-
 LARGEST = ReadSettings(pieces="keep-largest")
 
 
@@ -62,7 +59,7 @@ def flat_polygons():
 def test_labels_are_kept_as_ids_and_groups_joined(tmp_path, form):
     content = labelme() if form == "labelme" else coco(flat_polygons())
     stones = read(tmp_path, content, LARGEST)
-    assert compare(stones, LARGEST) == EXACT
+    assert compare(stones, LARGEST) == 1.0
     assert (stones.source.width_px, stones.source.height_px) == (WIDTH, HEIGHT)
     assert form == "coco" or stones.by_id(300).name == "300"
     assert stones.source.px_per_m is None
@@ -107,7 +104,7 @@ def test_coco_of_several_images_needs_a_name(tmp_path):
         with pytest.raises(InputError, match=rf"E115.*{text}"):
             read(tmp_path, content, ReadSettings(image=name))
     for name in ("photo.jpg", "a/photo.jpg", "7"):
-        assert compare(read(tmp_path, content, replace(PIECES, image=name))) == EXACT
+        assert compare(read(tmp_path, content, replace(PIECES, image=name))) == 1.0
     other = read(tmp_path, content, ReadSettings(image="other.jpg"))
     assert [(stone.id, stone.area_px) for stone in other] == [(1, 2000)]
     assert dict(other.source.reading) == {"image": "other.jpg"}
@@ -154,7 +151,7 @@ def test_sam_masks_that_do_not_nest(tmp_path, form):
     if form == "released":
         ids = None
         content = {"image": {"width": WIDTH, "height": HEIGHT}, "annotations": content}
-    assert compare(read(tmp_path, content), ids=ids) == EXACT
+    assert compare(read(tmp_path, content), ids=ids) == 1.0
 
 
 def test_outlines_that_overlap_or_reach_over_the_image(tmp_path):
@@ -183,7 +180,7 @@ def geojson(at=np.array, **changes):
 def test_geojson_in_px_of_an_image_or_of_a_map(tmp_path):
     for name in ("stones.geojson", "stones.json"):
         stones = read(tmp_path, geojson(), name=name)
-        assert compare(stones) == EXACT
+        assert compare(stones) == 1.0
         assert stones.by_id(8).name == "block 8"
         assert stones.by_id(8).area_px == masks()[8].sum()
         assert stones.source.px_per_m is None
@@ -192,7 +189,7 @@ def test_geojson_in_px_of_an_image_or_of_a_map(tmp_path):
     with pytest.raises(InputError, match=r"E116.*a map.*--unit m"):
         read(tmp_path, geojson(crs=crs))
     assert read(tmp_path, geojson(crs=crs), replace(PIECES, unit="m")).source.px_per_m
-    assert compare(read(tmp_path, geojson(crs=crs), replace(PIECES, unit="px"))) == EXACT
+    assert compare(read(tmp_path, geojson(crs=crs), replace(PIECES, unit="px"))) == 1.0
 
 
 def test_geojson_in_metres_has_y_up_and_a_scale_and_some_kinds_are_no_stones(tmp_path):

@@ -24,7 +24,6 @@ def saved(document, tmp_path, name="stones.dxf", **options):
     return tmp_path / name
 
 
-FACING_ALONE = ["top", "front", "back", "right", "left", "slanting"]
 SURVEY = 1200 / 3937
 UNITS_M = [
     0.0254, 0.3048, 1609.344, 1e-3, 1e-2, 1, 1e3, 2.54e-8, 2.54e-5, 0.9144, 1e-10, 1e-9, 1e-6,
@@ -32,12 +31,6 @@ UNITS_M = [
     SURVEY / 12, 3 * SURVEY, 5280 * SURVEY,
 ]  # fmt: skip
 """Of the codes 1 ... 24."""
-
-
-def matrix_to(place):
-    matrix = np.eye(4)
-    matrix[:3, :3] = turn(place).T
-    return ezdxf.math.Matrix44(matrix.ravel().tolist())
 
 
 def drawn(place="top", kind="LWPOLYLINE", code=6, unit=1.0, version="R2010"):
@@ -48,6 +41,8 @@ def drawn(place="top", kind="LWPOLYLINE", code=6, unit=1.0, version="R2010"):
     document = ezdxf.new(version)
     document.header["$INSUNITS"] = code
     space = document.modelspace()
+    to_place = np.eye(4)
+    to_place[:3, :3] = turn(place).T
     for stone, polygons in STONES.items():
         for number, points in enumerate(polygons[0]):
             style = {"layer": f"stone {stone}" if number == 0 else "0"}
@@ -60,7 +55,7 @@ def drawn(place="top", kind="LWPOLYLINE", code=6, unit=1.0, version="R2010"):
                 line = space.add_lwpolyline(flat, close=True, dxfattribs=style)
             else:  # closed by its last point, and of the old kind
                 line = space.add_polyline2d([*flat, flat[0]], dxfattribs=style)
-            line.transform(matrix_to(place))
+            line.transform(ezdxf.math.Matrix44(to_place.ravel().tolist()))
     return document
 
 
@@ -76,7 +71,7 @@ def test_dxf_in_every_plane(tmp_path, place):
         stones = read_stones(path, settings=replace(METRIC, up=PLACES[place][2]))
         close(stones)
         assert "the drawing is seen along" in said(stones)
-    if place in FACING_ALONE:
+    if place in ("top", "front", "back", "right", "left", "slanting"):
         stones = read_stones(path, settings=METRIC)
         close(stones)
         told = [notice for notice in stones.notices if "is seen along" in notice.message]
@@ -166,7 +161,7 @@ def test_dxf_versions_and_binary(tmp_path, version, kind):
     assert names == ["Stein ä", "Maß"]
 
 
-def test_dxf_curves_and_blocks(tmp_path):
+def test_dxf_curves(tmp_path):
     document = ezdxf.new("R2010", units=units.M)
     space = document.modelspace()
     # A circle, an ellipse, a spline, and half a circle as a bulge.
@@ -178,9 +173,6 @@ def test_dxf_curves_and_blocks(tmp_path):
     space.add_spline().set_open_rational(
         [(12, 0, 0), (14, 0, 0), (13, 1.7320508, 0), (12.5, 0.8660254, 0), (12, 0, 0)], [1] * 5, 1
     )
-    block = document.blocks.new("STONE")
-    block.add_lwpolyline([(0, 0), (0.4, 0), (0.4, 0.3), (0, 0.3)], close=True)
-    space.add_blockref("STONE", (10, 1), dxfattribs={"rotation": 90, "xscale": 2, "yscale": 2})
     # Not stones:
     space.add_line((0, 3), (1, 3))
     space.add_lwpolyline([(0, 3), (1, 3), (1, 4)])
@@ -193,8 +185,6 @@ def test_dxf_curves_and_blocks(tmp_path):
     assert areas[2] == pytest.approx(61 / 90, rel=2e-3)  # uniform cubic around a unit square
     assert areas[3] == pytest.approx(1 + math.pi / 8, rel=1e-3)
     assert areas[4] == pytest.approx(math.sqrt(3), rel=2e-3)  # a triangle
-    assert areas[5] == pytest.approx(0.8 * 0.6, rel=1e-3)
-    assert stones.by_id(6).mask.shape == (320, 240)  # turned
     (notice,) = [n for n in stones.notices if "left aside" in n.message]
     for kind in ("1 ARC", "1 LINE", "1 TEXT", "1 open LWPOLYLINE"):
         assert kind in notice.message

@@ -16,10 +16,8 @@ from drystone.io.walls import read_wall
 from tests.io.known_stones import PIECES, compare, label_image, masks
 from tests.io.pictures import areas, codes, discs, many_stones, said, two_stones
 
-small_masks = arrays(bool, array_shapes(min_dims=2, max_dims=2, max_side=12))
 
-
-@given(small_masks)
+@given(arrays(bool, array_shapes(min_dims=2, max_dims=2, max_side=12)))
 def test_components_are_numbered_in_row_order(mask):
     np.testing.assert_equal(components(mask), label(mask, connectivity=2, return_num=True))
 
@@ -141,10 +139,10 @@ def saved(tmp_path, **arrays):
 
 def test_an_array_of_labels_or_a_mask_a_stone(tmp_path):
     path = saved(tmp_path, image=np.zeros((40, 60, 3)), labels=label_image(), x=np.arange(3))
-    assert compare(read_stones(path, settings=PIECES)) == (1.0, 0.0, 0.0)
+    assert compare(read_stones(path, settings=PIECES)) == 1.0
     given = {f"stone_{i}": mask.astype(np.uint8) * 255 for i, mask in masks().items()}
     stones = read_stones(saved(tmp_path, **given), settings=PIECES)
-    assert compare(stones) == (1.0, 0.0, 0.0)
+    assert compare(stones) == 1.0
     assert stones.by_id(300).name == "stone_300"
     by_name = read_stones(saved(tmp_path, **{f"m{i}": m for i, m in masks().items()}),
                           settings=PIECES)  # fmt: skip
@@ -164,9 +162,6 @@ def test_arrays_that_are_no_masks_and_damaged_archives(tmp_path):
     path.write_bytes(path.read_bytes()[:-40])
     with pytest.raises(InputError, match=r"E106"):
         read_stones(path)
-
-
-IDS = ReadSettings(mask=False)
 
 
 @pytest.mark.parametrize(
@@ -260,7 +255,7 @@ def test_neither_stones_that_touch_nor_a_thick_stone_around_others_are_nets():
     on_base = np.pad(np.kron([[1, 2, 3]], np.ones((54, 30), int)), ((6, 0), (0, 0)),
                      constant_values=9)  # fmt: skip
     for labels in (many_stones(3, 4, size=8, gap=0), courses, on_base):
-        stones = read_stones(np.pad(labels, 4), settings=IDS)
+        stones = read_stones(np.pad(labels, 4), settings=ReadSettings(mask=False))
         assert [stone.id for stone in stones] == [i for i in np.unique(labels) if i]
     labels = np.pad(np.kron([[1, 0, 2, 0, 3]], np.ones((20, 20), int)), 20, constant_values=0)
     labels[12:48, 12:128] = np.where(labels[12:48, 12:128], labels[12:48, 12:128], 9)
@@ -269,18 +264,13 @@ def test_neither_stones_that_touch_nor_a_thick_stone_around_others_are_nets():
     assert codes(stones) == ["W112"]
 
 
-def blended(share, first=20, step=4, seed=1):
-    """Stones of which a share of the outline took a value between those of its two sides."""
-    labels = many_stones(4, 5, first=first, step=step).astype(np.int64)
-    rng = np.random.default_rng(seed)
-    edge = (labels > 0) & (ndimage.minimum_filter(labels, 3) == 0)
-    chosen = edge & (rng.random(labels.shape) < share)
-    return labels, np.where(chosen, (labels * rng.random(labels.shape)).astype(int) | 1, labels)
-
-
 @pytest.mark.parametrize(("step", "share"), [(1, 0.03), (4, 0.01)])
 def test_few_blended_pixels_are_given_to_what_they_touch_most(tmp_path, step, share):
-    labels, values = blended(share, first=4, step=step)
+    labels = many_stones(4, 5, first=4, step=step).astype(np.int64)
+    rng = np.random.default_rng(1)
+    edge = (labels > 0) & (ndimage.minimum_filter(labels, 3) == 0)
+    chosen = edge & (rng.random(labels.shape) < share)
+    values = np.where(chosen, (labels * rng.random(labels.shape)).astype(int) | 1, labels)
     stones = read_stones(values)
     changed = int((labels != values).sum())
     assert changed > 0

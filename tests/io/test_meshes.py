@@ -54,50 +54,19 @@ def test_meshes_in_every_plane(tmp_path, place):
     axis = {"right": "X, with", "front": "Y, with"}.get(place, "")
     assert f"seen along {axis}" in seen.message
     assert "taken as metres" in unit.message
+    assert "left hand" not in said(stones)
 
 
-@pytest.mark.parametrize(
-    ("place", "kind"),
-    [
-        ("top", "stl"),
-        ("front", "stl_ascii"),
-        ("right", "ply"),
-        ("y, top", "obj"),
-        ("y, front", "obj"),
-    ],
-)
-def test_meshes_that_may_be_mirrored_are_asked_about(tmp_path, place, kind):
-    path = scanned(tmp_path, solid(STONES[5], place), kind)
-    if place in ("front", "y, top"):
-        with pytest.raises(InputError, match=r"E116 .*which axis is up.*--up y .*or --up z"):
-            read_stones(path, settings=METRIC)
-        return
-    notice = read_stones(path, settings=METRIC).notices[0]
-    assert "seen along" in notice.message
-    assert "--up" in notice.cure
-
-
-@pytest.mark.parametrize("place", ["front", "right", "top"])
-def test_meshes_of_a_left_hand_are_named(tmp_path, place):
-    for hand in (1, -1):
-        path = scanned(tmp_path, scene(place, hand))
-        told = said(read_stones(path, settings=replace(METRIC, up="z")))
-        assert ("left hand" in told) == (hand == -1 and place != "top")
-
-
-def torn(mesh, way):
-    """Every corner of a face by itself, as normals, textures and rounding make them."""
-    vertices = mesh.vertices[mesh.faces].reshape(-1, 3).astype(np.float32)
-    if way == "noise":
-        ends = np.random.default_rng(5).choice([-np.inf, np.inf], vertices.shape)
-        vertices = np.nextafter(vertices, ends.astype(np.float32))
-    faces = np.arange(len(vertices)).reshape(-1, 3)
-    normals = np.repeat(mesh.face_normals, 3, axis=0) if way == "normals" else None
-    found = trimesh.Trimesh(vertices, faces, process=False, vertex_normals=normals)
-    if way == "texture":
-        uv = np.random.default_rng(6).random((len(vertices), 2))
-        found.visual = trimesh.visual.TextureVisuals(uv=uv)
-    return found
+def test_meshes_that_may_be_mirrored_are_asked_about(tmp_path):
+    with pytest.raises(InputError, match=r"E116 .*which axis is up.*--up y .*or --up z"):
+        read_stones(scanned(tmp_path, solid(STONES[5], "front")), settings=METRIC)
+    for place in ("top", "right"):
+        path = scanned(tmp_path, solid(STONES[5], place))
+        assert "--up" in read_stones(path, settings=METRIC).notices[0].cure
+    for place in ("front", "right", "top"):
+        left_handed = scanned(tmp_path, scene(place, hand=-1))
+        told = said(read_stones(left_handed, settings=replace(METRIC, up="z")))
+        assert ("left hand" in told) == (place != "top")
 
 
 @pytest.mark.parametrize(
@@ -108,7 +77,18 @@ def test_corners_in_one_place_are_one(tmp_path, way, shift, kind):
     names = [stone for stone in APART if stone != 34]
     whole = trimesh.util.concatenate([solid(STONES[stone], "top") for stone in names])
     whole.vertices += (shift, shift, 0)
-    stones = read_stones(scanned(tmp_path, torn(whole, way), kind), settings=METRIC)
+    # Every corner of a face by itself, as normals, textures and rounding make them.
+    vertices = whole.vertices[whole.faces].reshape(-1, 3).astype(np.float32)
+    if way == "noise":
+        ends = np.random.default_rng(5).choice([-np.inf, np.inf], vertices.shape)
+        vertices = np.nextafter(vertices, ends.astype(np.float32))
+    faces = np.arange(len(vertices)).reshape(-1, 3)
+    normals = np.repeat(whole.face_normals, 3, axis=0) if way == "normals" else None
+    torn = trimesh.Trimesh(vertices, faces, process=False, vertex_normals=normals)
+    if way == "texture":
+        uv = np.random.default_rng(6).random((len(vertices), 2))
+        torn.visual = trimesh.visual.TextureVisuals(uv=uv)
+    stones = read_stones(scanned(tmp_path, torn, kind), settings=METRIC)
     want = [shapely.Polygon(STONES[stone][0][0], STONES[stone][0][1:]).area for stone in names]
     assert [stone.area_px for stone in stones] == pytest.approx(want, rel=1e-2)
 
@@ -144,15 +124,6 @@ def test_bodies_without_names(tmp_path, kind, options):
     assert len(read_stones(unnamed, settings=settings)) == len(APART)  # by the content alone
 
 
-def boxes(*names):
-    """An OBJ of squares side by side, each after lines of its own."""
-    lines = []
-    for i, name in enumerate(names):
-        lines += [*(f"v {3 * i + x} {y} 0" for x, y in ((0, 0), (2, 0), (2, 2), (0, 2))), name]
-        lines.append("f -4 -3 -2 -1")
-    return "\n".join(lines)
-
-
 @pytest.mark.parametrize(
     ("names", "expected", "parts"),
     [
@@ -165,9 +136,12 @@ def boxes(*names):
     ],
 )
 def test_obj_objects_and_groups(tmp_path, names, expected, parts):
-    settings = ReadSettings(px_per_m=50, pieces="keep-largest")
-    text = boxes(*names) + "\no nothing"
-    stones = read_stones(written(tmp_path, text, "s.obj"), settings=settings)
+    lines = []
+    for i, name in enumerate(names):  # each of a square beside the one before
+        lines += [*(f"v {3 * i + x} {y} 0" for x, y in ((0, 0), (2, 0), (2, 2), (0, 2))), name]
+        lines.append("f -4 -3 -2 -1")
+    path = written(tmp_path, "\n".join([*lines, "o nothing"]), "s.obj")
+    stones = read_stones(path, settings=ReadSettings(px_per_m=50, pieces="keep-largest"))
     assert [stone.name for stone in stones] == expected
     told = [
         "of the groups of a face the first counts, and what follows # is a comment, "

@@ -213,18 +213,13 @@ def test_schema_is_valid_and_describes_every_field():
     schema = plan_schema()
     jsonschema.Draft202012Validator.check_schema(schema)
 
-    def undescribed(node, path):
-        found = []
+    nodes = [schema, *schema["$defs"].values()]
+    for node in nodes:  # which grow
         for name, field in node.get("properties", {}).items():
             target = schema["$defs"][field["$ref"].split("/")[-1]] if "$ref" in field else field
-            if "description" not in {**target, **field} and "const" not in field:
-                found.append(f"{path}.{name}")
-            found += undescribed(target, f"{path}.{name}")
-        return found
-
-    assert undescribed(schema, "$") == []
-    for name, node in schema["$defs"].items():
-        assert undescribed(node, name) == []
+            assert {"description", "const"} & (target | field).keys(), name
+            nodes.append(field)
+    assert len(nodes) > 70
 
 
 @cache
@@ -241,17 +236,6 @@ def planned_of(source):
 
 def contents(folder):
     return {path.name: path.read_bytes() for path in folder.iterdir() if path.is_file()}
-
-
-@pytest.mark.parametrize("geometry", ["exact", "raster"])
-def test_what_python_wrote_is_read_again(geometry, tmp_path):
-    result = planned(geometry)
-    path = ds.write_plan_folder(result, tmp_path / "new" / "out")
-    assert path == tmp_path / "new" / "out" / "plan.json"
-    assert ds.read_plan(path) == result.plan
-    wall = read_wall(path.parent)
-    assert (wall.labels == result.wall.labels).all()
-    assert (wall.blocks is not None) == (geometry == "exact")
 
 
 def test_files_of_an_earlier_plan_go_others_stay_and_no_folder_is_made_that_cannot_be(tmp_path):
@@ -296,15 +280,18 @@ def test_a_planner_becomes_a_plan_at_any_step():
     assert whole.plan.settings["search"]["budget"] == 1
 
 
-def test_stones_of_a_few_px_are_not_taken_for_blended_ids(tmp_path):
+def test_what_python_wrote_is_read_again_and_stones_of_a_few_px_are_no_blended_ids(tmp_path):
     few = ds.generate.RubbleSettings(count=14)
     stones = ds.generate.rubble_stones(few, np.random.default_rng(3))
     settings = greedy({"geometry": "raster"})
     result = ds.plan_wall(stones, 200, 100, scale=0.12, settings=settings, budget=1)
-    ds.write_plan_folder(result, tmp_path)
+    path = ds.write_plan_folder(result, tmp_path / "new" / "out")
+    assert path == tmp_path / "new" / "out" / "plan.json"
     with pytest.raises(ds.DrystoneError, match="E101"):
-        read_wall_image(tmp_path / "wall.png")
-    assert (read_wall(tmp_path).labels == result.wall.labels).all()
+        read_wall_image(path.with_name("wall.png"))
+    wall = read_wall(path.parent)
+    assert (wall.labels == result.wall.labels).all()
+    assert (wall.plan, wall.blocks) == (result.plan, None)
 
 
 def test_what_the_stones_were_read_from_is_never_replaced(tmp_path):

@@ -38,15 +38,8 @@ def test_the_published_files_hash_as_they_should(data_dir):
     assert not any(f.downloaded for s in SETS.values() for f in fetch_set(s, data_dir))
 
 
-@pytest.fixture
-def served(tmp_path):
-    """The folder of a server, with the files of the small set."""
-    lay_open(tmp_path / "served")
-    return tmp_path / "served"
-
-
-def test_what_is_missing_is_downloaded_once_and_with_its_licence(served, tmp_path):
-    folder = lay_down(tmp_path / "here", "toy/R.png")
+def test_what_is_missing_is_downloaded_once_and_with_its_licence(tmp_path):
+    served, folder = lay_open(tmp_path / "served"), lay_down(tmp_path / "here", "toy/R.png")
     with serving(served) as address:
         first = fetch_set(toy_set(), folder, address=address)
         (served / toy_set().files[1].address).unlink()
@@ -63,12 +56,13 @@ def test_what_is_missing_is_downloaded_once_and_with_its_licence(served, tmp_pat
         assert (place / NOTICE).read_text(encoding="utf-8") == LICENCE
 
 
-def test_neither_is_another_file_of_the_name_replaced_nor_other_contents_kept(served, tmp_path):
+def test_neither_is_another_file_of_the_name_replaced_nor_other_contents_kept(tmp_path):
     mine = lay_down(tmp_path, "toy/R.png") / "toy" / "R.png"
     mine.write_bytes(b"my own")
     with pytest.raises(InputError, match=r"E160 .*R\.png.*Move it away"):
         fetch_set(toy_set(), tmp_path, address=nobody())
     assert mine.read_bytes() == b"my own"
+    served = lay_open(tmp_path / "served")
     (served / toy_set().files[0].address).write_bytes(b"something else")
     said = r"E160 .*another network, or save http"
     with serving(served) as address, pytest.raises(InputError, match=said):
@@ -154,20 +148,15 @@ SAID = {
 
 @pytest.mark.parametrize("name", COUNTS)
 def test_published_pictures_have_the_stones_that_their_authors_count(data_dir, name):
-    """Regions of 50 px and more, by default and by that rule; each has the pixels of its id."""
+    """Regions of 50 px and more, by default and by that rule."""
     for least_px in (None, 50):
         stones = read_stones(data_dir / name, settings=ReadSettings(min_area_px=least_px))
         assert len(stones) == COUNTS[name]
         assert min(stone.area_px for stone in stones) >= 50
-    with Image.open(data_dir / name) as image:
-        grey = np.asarray(image if image.mode == "L" else image.getchannel("R"))
     if name in SAID:
         assert codes(stones)[0] == SAID[name]
         return
     assert codes(stones) == []
-    assert stones.total_area_px == int((grey > 0).sum())
-    for stone in stones:
-        top = grey.shape[0] - stone.bottom_px - stone.mask.shape[0]
-        rows = slice(top, top + stone.mask.shape[0])
-        cols = slice(stone.left_px, stone.left_px + stone.mask.shape[1])
-        assert (grey[rows, cols][stone.mask] == stone.id).all()
+    with Image.open(data_dir / name) as image:
+        grey = np.asarray(image if image.mode == "L" else image.getchannel("R"))
+    assert stones.total_area_px == np.count_nonzero(grey)

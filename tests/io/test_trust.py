@@ -24,19 +24,13 @@ from tests.io.pictures import codes, save_mask, two_stones
 from tests.io.test_formats import LIMIT
 
 
-@pytest.fixture
-def ghostscript(tmp_path, monkeypatch):
-    """A program of the name of Ghostscript, first on the path; the file that it would write."""
-    program, called = tmp_path / "bin" / "gs", tmp_path / "called"
-    program.parent.mkdir()
-    program.write_text(f"#!/bin/sh\necho x > {called}\n")
-    program.chmod(0o755)
-    monkeypatch.setenv("PATH", str(program.parent), prepend=os.pathsep)
-    return called
-
-
 @pytest.mark.parametrize("name", list(FILES))
-def test_files_that_are_read_or_refused(name, tmp_path, ghostscript, capfd):
+def test_files_that_are_read_or_refused(name, tmp_path, monkeypatch, capfd):
+    ghostscript, called = tmp_path / "bin" / "gs", tmp_path / "called"
+    ghostscript.parent.mkdir()
+    ghostscript.write_text(f"#!/bin/sh\necho x > {called}\n")
+    ghostscript.chmod(0o755)
+    monkeypatch.setenv("PATH", str(ghostscript.parent), prepend=os.pathsep)
     make, error = FILES[name]
     path = tmp_path / name
     path.write_bytes(make())
@@ -46,7 +40,7 @@ def test_files_that_are_read_or_refused(name, tmp_path, ghostscript, capfd):
         said = str(caught)
     assert re.match(error or "$", said), said
     assert len(said) < 700
-    assert not ghostscript.exists()
+    assert not called.exists()
     assert capfd.readouterr() == ("", "")
 
 
@@ -124,8 +118,7 @@ def test_a_list_has_an_end():
     assert len(short(LONG)) < 200
 
 
-@pytest.mark.parametrize("pieces", ["auto", "split", "keep-largest"])
-def test_notices_on_thousands_of_bits_are_short(pieces):
+def test_notices_on_thousands_of_bits_are_short():
     specks, holes = np.zeros((2, 200, 200), np.uint32)
     specks[2:90, 2:90], specks[2:90, 100:190] = 1, 2
     few = specks[100::4, 2::4]
@@ -134,9 +127,9 @@ def test_notices_on_thousands_of_bits_are_short(pieces):
         box = holes[20 * row : 20 * row + 16, 20 * col : 20 * col + 16]
         box[:] = number
         box[1:15:2, 1:15:2] = 0
-    settings = ReadSettings(pieces="keep-largest" if pieces == "auto" else pieces)
     found = [read_stones(specks), read_stones(holes)]
-    found += [read_stones(np.minimum(specks, 2), settings=settings)]
+    for pieces in ("split", "keep-largest"):
+        found += [read_stones(np.minimum(specks, 2), settings=ReadSettings(pieces=pieces))]
     said = [notice for stones in found for notice in stones.notices]
     assert {"W112", "W113"} <= {notice.code for notice in said}
     assert max(len(str(notice)) for notice in said) < 6000

@@ -80,7 +80,9 @@ def test_a_plan_of_stones_whose_holes_stay_open_is_read(tmp_path):
     result = ds.plan_wall(found, 50, 12, scale=1.0, budget=1)
     assert len(result.plan.stone_steps) == 2
     path = ds.write_plan_folder(result, tmp_path / "wall")
-    assert read_wall(path).blocks is not None
+    wall = read_wall(path)
+    assert (wall.labels == result.wall.labels).all()
+    assert wall.blocks is not None
     blocks = path.parent / "blocks.json"
     blocks.write_text(blocks.read_text().replace('"id": 1,', '"id": 9,'))
     with pytest.raises(InputError, match=r"E133 .*other stones"):
@@ -138,10 +140,7 @@ def drawn(form, folder, blocks=BLOCKS):
     return labelled.written(folder, "qupath" if form == "y up" else form, shapes)
 
 
-OUTLINES = [*labelled.CLASSES, "y up"]
-
-
-@pytest.mark.parametrize("form", OUTLINES)
+@pytest.mark.parametrize("form", [*labelled.CLASSES, "y up"])
 def test_outlines_are_blocks_that_stand_on_their_lowest_point(form, tmp_path):
     path = drawn(form, tmp_path)
     wall = read_wall(path)

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
-from hypothesis.extra.numpy import arrays
 
 from drystone.kernels.boundary import EMPTY, boundary_of
 from drystone.kernels.contacts import contacts_in
@@ -12,16 +11,6 @@ from drystone.kernels.patches import GROUND, MARGIN_PX, Patch, painted_patch, wh
 from tests.naive import contacts as naive
 from tests.statics.walls import coursed, irregular
 from tests.strategies import dust_labels, label_images, masks, repeatable
-
-pictures = arrays(
-    np.uint32, st.tuples(st.integers(1, 9), st.integers(1, 9)), elements=st.integers(0, 3)
-)
-
-
-def chains_of(boundary):
-    """Both labels and the nodes of each chain."""
-    nodes = np.split(boundary.nodes, boundary.begins[1:-1])
-    return [(*pair, m.tolist()) for pair, m in zip(boundary.labels.tolist(), nodes, strict=False)]
 
 
 def test_where_there_is_hardly_anything_the_ground_is_touched_at_most():
@@ -34,15 +23,6 @@ def test_where_there_is_hardly_anything_the_ground_is_touched_at_most():
         found = contacts_in(whole_patch(labels.astype(np.uint32)))
         assert found.high.tolist() == high
         assert found.ends.shape == (len(high), 2, 2)
-
-
-@given(labels=pictures | label_images(), ids=st.lists(st.integers(1, 4), max_size=3))
-@repeatable(100)
-def test_chains_and_corners_of_what_is_fresh_are_those_of_all_that_have_it(labels, ids):
-    cells = cells_at(labels, (labels.shape[0] + 2, labels.shape[1] + 2), -1, -1)
-    every, found = boundary_of(cells), boundary_of(cells, np.isin(cells, ids))
-    assert chains_of(found) == [chain for chain in chains_of(every) if {*chain[:2]} & {*ids}]
-    assert found.corners.tolist() == [c for c in every.corners.tolist() if {*c[:2]} & {*ids}]
 
 
 def test_labels_of_64_bits_survive():
@@ -144,10 +124,3 @@ def test_a_point_near_the_edge_of_the_cells_sees_what_is_there():
     assert found.ends.tolist() == [[[11.0, 19.0], [11.0, 19.0]]]
     assert found.normals.tolist() == [[0.0, 1.0]]
     assert found.run_count == 0
-
-
-def test_only_contacts_of_what_is_fresh():
-    labels = np.array([[1, 1, 2, 2, 0, 0]], np.uint32)
-    patch, _ = painted_patch(labels, [(9, 0, 4, np.ones((1, 1), bool))])
-    found = contacts_in(patch)
-    assert list(zip(found.high, found.low, strict=True)) == [(9, 0), (9, 2)]

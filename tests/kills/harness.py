@@ -121,14 +121,6 @@ def ran(case, folder, *more):
     )
 
 
-def run_whole(case, folder):
-    """Let a command end well, and return how long it took, s."""
-    begun = time.monotonic()
-    done = ran(case, folder)
-    assert done.returncode in (0, 4), done.stderr
-    return time.monotonic() - begun
-
-
 def called(arguments):
     """Call the command line in this process; return its exit code and what it said."""
     words = io.StringIO()

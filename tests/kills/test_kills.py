@@ -10,21 +10,14 @@ from tests.kills.harness import Case, called, killed, lost, made_stones, plan_by
 pytestmark = pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="no such signals here")
 
 
-SMALL = (
-    "[search]\npasses = 3\nchains = 2\nshare_every = 2\n[settle]\ntrials = 0\n[goal]\nfallen = 0\n"
-)
-"""A search that soon comes to its chains, and does not rehearse."""
-
-
-WALL = "plan {stones} --wall 70x30 --scale 1 -o {folder} "
-
-
 @pytest.fixture(scope="module")
 def place(tmp_path_factory):
     """A folder with stones and settings, in which whole walls stay."""
     place = tmp_path_factory.mktemp("kills")
     made_stones(place / "few.png", 6, 70, 30, 2)
-    (place / "small.toml").write_text(SMALL)
+    # A search that soon comes to its chains, and does not rehearse
+    search = "[search]\npasses = 3\nchains = 2\nshare_every = 2\n"
+    (place / "small.toml").write_text(f"{search}[settle]\ntrials = 0\n[goal]\nfallen = 0\n")
     return place
 
 
@@ -38,8 +31,9 @@ def place(tmp_path_factory):
 )
 def test_nothing_runs_on_and_nothing_is_lost(way, jobs, sent, pause, group, place):
     stones, folder, whole = place / "few.png", place / sent, place / way.split()[-1]
-    said = f"{WALL}{way}{jobs}".format(stones=stones, small=place / "small.toml", folder="{folder}")
-    case = Case(sent, tuple(said.split()), ("--jobs", "1", "--resume"), plan_bytes, stones, pause)
+    said = f"plan {stones} --wall 70x30 --scale 1 -o {{folder}} {way}{jobs}"
+    words = tuple(said.replace("{small}", str(place / "small.toml")).split())
+    case = Case(sent, words, ("--jobs", "1", "--resume"), plan_bytes, stones, pause)
     one = killed(case, sent, folder, partial(case.waits, folder), group=group)
     assert one.faults == []
     assert one.code == {"INT": 130, "TERM": 143, "KILL": -9}[sent]

@@ -1,6 +1,4 @@
-"""The packer beside the planner: what it is asked, and that it fits stones into a strip."""
-
-from types import SimpleNamespace
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
@@ -12,39 +10,30 @@ from drystone_lab.table import BenchSettings
 BRICKS = brick_stones(BrickSettings(count=3), np.random.default_rng(1))
 
 
-class Packer:
+@pytest.fixture
+def packer():
     """Notes what it is asked, and packs everything into 200 px."""
-
-    def __init__(self):
-        self.items, self.configs, self.strips = [], [], []
-        self.StripPackingConfig = lambda **given: self.configs.append(given)
-
-    def Item(self, name, shape, demand, allowed_orientations):  # noqa: N802 - as in spyrrow
-        self.items.append((name, shape, demand, allowed_orientations))
-        return self.items[-1]
-
-    def StripPackingInstance(self, name, strip_height, items):  # noqa: N802
-        self.strips.append((name, strip_height, items))
-        return SimpleNamespace(solve=lambda _: SimpleNamespace(width=200.0))
+    packer = Mock()
+    packer.StripPackingInstance.return_value.solve.return_value.width = 200.0
+    return packer
 
 
-def test_the_packer_gets_every_stone_once_as_it_lies_first():
-    packer = Packer()
+def test_the_packer_gets_every_stone_once_as_it_lies_first(packer):
     assert packing.packed_width_px(packer, BRICKS, 50.0, (0.0, 90.0), 7, 3) == 200.0
-    (strip,) = packer.strips
-    assert strip == ("stones", 50.0, packer.items)
-    assert [name for name, *_ in packer.items] == ["1", "2", "3"]
-    for _, shape, demand, turns in packer.items:
-        assert (demand, turns) == (1, (0.0, 90.0))
+    for number, ((name, shape), about) in enumerate(packer.Item.call_args_list, 1):
+        assert (name, about) == (str(number), {"demand": 1, "allowed_orientations": (0.0, 90.0)})
         xs, ys = zip(*shape, strict=True)
         assert (max(xs) - min(xs), max(ys) - min(ys)) == pytest.approx((36, 12))
-    assert packer.configs == [
-        {"early_termination": False, "total_computation_time": 7, "num_workers": 1, "seed": 3}
-    ]
+    packer.StripPackingInstance.assert_called_once_with(
+        "stones", strip_height=50.0, items=3 * [packer.Item.return_value]
+    )
+    packer.StripPackingConfig.assert_called_once_with(
+        early_termination=False, total_computation_time=7, num_workers=1, seed=3
+    )
 
 
-def test_strips_stand_beside_walls(monkeypatch):
-    packer, said = Packer(), []
+def test_strips_stand_beside_walls(packer, monkeypatch):
+    said = []
     monkeypatch.setattr(packing, "load_packer", lambda: packer)
     (table,) = packing.run(BenchSettings(quick=True, seconds=(0.01,), say=said.append))
     (row,) = table.rows
@@ -54,8 +43,9 @@ def test_strips_stand_beside_walls(monkeypatch):
     assert placed >= 8
     assert row[:8] == ("bricks", 36, 200.0, density, 200.0, density, 108, 1.0)
     assert row[8] == pytest.approx(placed / 9)
-    assert [turns for *_, turns in packer.items[::9]] == [(0.0, 90.0, 180.0, 270.0), None]
-    assert packer.configs[0]["total_computation_time"] == 1
+    turns = [about["allowed_orientations"] for _, about in packer.Item.call_args_list[::9]]
+    assert turns == [(0.0, 90.0, 180.0, 270.0), None]
+    assert packer.StripPackingConfig.call_args.kwargs["total_computation_time"] == 1
     assert len(said) == 1
 
 

@@ -1,5 +1,3 @@
-"""Charts of many walls, of times, of predictions; and walls on one sheet."""
-
 from dataclasses import replace
 from statistics import median
 
@@ -54,23 +52,19 @@ def test_one_figure_over_another():
     assert (ax.get_xlabel(), ax.get_ylabel()) == ("area", "F_SF")
 
 
-STEPS = [
-    StepTime(0, 4, 0.010, {"placement": 0.004, "limit analysis": 0.005}),
-    StepTime(1, 4, 0.020, {"placement": 0.006, "indices": 0.014}),
-]
-SERIES = {"wall": [(10.0, 1.0), (100.0, 10.0)], "step": [(10.0, 0.5)]}
-CLAIMS = [("paper: wall", "x", 20.0, 9.0), ("paper: step", "v", 90.0, 25.0)]
-
-
 def test_parts_stand_on_top_of_each_other_and_reach_the_time_of_the_step():
-    figure = pictures.step_time_panels({"variant": STEPS, "full": STEPS[:1]})
+    steps = [
+        StepTime(0, 4, 0.010, {"placement": 0.004, "limit analysis": 0.005}),
+        StepTime(1, 4, 0.020, {"placement": 0.006, "indices": 0.014}),
+    ]
+    figure = pictures.step_time_panels({"variant": steps, "full": steps[:1]})
     ax, right = figure.axes
     assert (ax.get_title(), right.get_title()) == ("variant", "full")
     parts = [*pictures.PART_COLOURS, pictures.REST]
     assert [text.get_text() for text in figure.legends[0].get_texts()] == parts
     assert [bars.get_label() for bars in ax.containers] == parts
     assert ax.get_legend() is right.get_legend() is None
-    for k, step in enumerate(STEPS):
+    for k, step in enumerate(steps):
         foot = 0.0
         for part, bars in zip(parts, ax.containers, strict=True):
             assert bars[k].get_y() == pytest.approx(foot)
@@ -81,8 +75,10 @@ def test_parts_stand_on_top_of_each_other_and_reach_the_time_of_the_step():
 
 
 def test_points_laws_and_claims_are_drawn_where_they_are():
+    series = {"wall": [(10.0, 1.0), (100.0, 10.0)], "step": [(10.0, 0.5)]}
+    claims = [("paper: wall", "x", 20.0, 9.0), ("paper: step", "v", 90.0, 25.0)]
     ax = Figure().add_subplot()
-    pictures.plot_growth(ax, SERIES, CLAIMS)
+    pictures.plot_growth(ax, series, claims)
     points, line, bare, *paper = ax.get_lines()
     assert points.get_xydata().tolist() == [[10.0, 1.0], [100.0, 10.0]]
     np.testing.assert_allclose(line.get_xydata(), points.get_xydata())
@@ -96,16 +92,14 @@ def test_points_laws_and_claims_are_drawn_where_they_are():
     assert ax.get_xlabel() == "pixels of the wall"
 
 
-POINTS = [
-    Prediction("granite", "turns", 40.0, 30.0, 35.0, 50.0),
-    Prediction("granite", "level", 40.0, 55.0, 60.0, 80.0),
-    Prediction("sandstone", "turns", 10.0, 12.0, 12.0, 12.0),
-]
-
-
 def test_points_bands_looks_and_legend():
-    ax = pictures.plot_predictions(POINTS, "friction")
-    for (line, _, (bar,)), point in zip(ax.containers, POINTS, strict=True):
+    points = [
+        Prediction("granite", "turns", 40.0, 30.0, 35.0, 50.0),
+        Prediction("granite", "level", 40.0, 55.0, 60.0, 80.0),
+        Prediction("sandstone", "turns", 10.0, 12.0, 12.0, 12.0),
+    ]
+    ax = pictures.plot_predictions(points, "friction")
+    for (line, _, (bar,)), point in zip(ax.containers, points, strict=True):
         assert line.get_xydata().tolist() == [[point.measured, point.predicted]]
         ends = [[point.measured, point.low], [point.measured, point.high]]
         assert bar.get_segments()[0].tolist() == ends
@@ -119,12 +113,11 @@ def test_points_bands_looks_and_legend():
     assert words == ["turns", "level", "granite", "sandstone", "friction", "equal", "20 % off"]
 
 
-def _panel(title, aspect):
-    return pictures.Panel(title, aspect, lambda ax: ax.plot([0, 1], [0, 1], label="line"))
-
-
 def test_panels_go_from_left_to_right_and_down_as_high_as_the_tallest_of_their_row():
-    panels = [_panel("a", 0.2), _panel("b\nsecond", 0.5), pictures.EMPTY, _panel("d", 0.3)]
+    def panel(title, aspect):
+        return pictures.Panel(title, aspect, lambda ax: ax.plot([0, 1], [0, 1], label="line"))
+
+    panels = [panel("a", 0.2), panel("b\nsecond", 0.5), pictures.EMPTY, panel("d", 0.3)]
     figure = pictures.sheet_of(panels, 2)
     assert [ax.get_title(loc="left") for ax in figure.axes] == ["a", "b\nsecond", "d"]
     boxes = [ax.get_position(original=True) for ax in figure.axes]
@@ -133,7 +126,7 @@ def test_panels_go_from_left_to_right_and_down_as_high_as_the_tallest_of_their_r
     assert boxes[2].y1 < boxes[1].y0
     assert min(box.y0 for box in boxes) > 0
     assert max(box.y1 for box in boxes) < 1
-    figure = pictures.sheet_of([_panel("", 0.2), _panel("", 0.5), _panel("", 0.3)], 2)
+    figure = pictures.sheet_of([panel("", aspect) for aspect in (0.2, 0.5, 0.3)], 2)
     inches = figure.get_size_inches()
     sizes = [ax.get_position(original=True).size * inches for ax in figure.axes]
     assert [high / wide for wide, high in sizes] == pytest.approx([0.5, 0.5, 0.3])

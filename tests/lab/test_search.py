@@ -1,9 +1,8 @@
-"""The comparison of methods: ways to look for a wall in a given time, and the tables of them."""
-
 import os
 from dataclasses import replace
 from itertools import chain, count, islice, product, repeat, starmap
 from types import SimpleNamespace
+from unittest.mock import Mock, call
 
 import numpy as np
 import pytest
@@ -70,45 +69,29 @@ def test_the_search_is_that_of_a_plan_with_the_same_budget_and_another_has_no_co
     assert looked_for("without courses", 1, clock_of(0, 100)).found.courses is None
 
 
-@pytest.fixture
-def worth(monkeypatch):
-    """Walls that are worth what is said, in place of built ones, and the seeds of all but one."""
-    seeds = []
+def test_restarts_keep_the_best_of_different_seeds_and_wedge_what_is_nearly_that(monkeypatch):
+    planner = Mock(return_value=SimpleNamespace(steps=tuple))
+    wedged = Mock(side_effect=lambda found, _: SimpleNamespace(merit=found.merit + 0.2))
+    monkeypatch.setattr(search.Yard, "planner", planner)
+    monkeypatch.setattr(search, "wedged", wedged)
 
-    def planner(_, seed):
-        seeds.append(seed)
-        return SimpleNamespace(steps=lambda: ())
-
-    def of(*merits):
-        values = iter(merits)
-        found = SimpleNamespace(of=lambda _: SimpleNamespace(merit=next(values)))
-        monkeypatch.setattr(search, "FoundWall", found)
-        monkeypatch.setattr(search.Yard, "planner", planner)
+    def restarts(*merits, wedges):
+        """How many walls there are and what the best is worth, after each wall."""
+        worth = iter(merits)
+        built = SimpleNamespace(of=lambda _: SimpleNamespace(merit=next(worth)))
+        monkeypatch.setattr(search, "FoundWall", built)
         settings = SimpleNamespace(search=SimpleNamespace(wedge_below=0.25))
         workshop = SimpleNamespace(stones=None, site=None)
-        return SimpleNamespace(seed=3, seeds=seeds, workshop=workshop, settings=settings)
+        first = SimpleNamespace(seed=3, workshop=workshop, settings=settings)
+        states = search._restarts(first, 0.0, ticking(), wedges=wedges)
+        return [(state.walls, state.best().merit) for state in islice(states, len(merits))]
 
-    return of
-
-
-def test_restarts_keep_the_best_of_different_seeds_and_wedge_what_is_nearly_that(
-    worth, monkeypatch
-):
-    first = worth(1.0, 3.0, 2.0, 4.0)
-    states = islice(search._restarts(first, 0.0, ticking()), 4)
-    found = [(state.walls, state.best().merit) for state in states]
+    found = restarts(1.0, 3.0, 2.0, 4.0, wedges=False)
     assert found == [(1, 1.0), (2, 3.0), (3, 3.0), (4, 4.0)]
-    assert first.seeds == [3 + search.BETWEEN_SEEDS * k for k in (1, 2, 3)]
-    tried = []
-
-    def wedged(found, *_):
-        tried.append(found.merit)
-        return SimpleNamespace(merit=found.merit + 0.2)
-
-    monkeypatch.setattr(search, "wedged", wedged)
-    states = search._restarts(worth(1.0, 0.9, 0.96, 1.1), 0.0, ticking(), wedges=True)
-    assert [next(states).best().merit for _ in range(4)] == pytest.approx([1.2, 1.2, 1.2, 1.3])
-    assert tried == [1.0, 0.96, 1.1]
+    assert planner.mock_calls == [call(3 + search.BETWEEN_SEEDS * k) for k in (1, 2, 3)]
+    found = restarts(1.0, 0.9, 0.96, 1.1, wedges=True)
+    assert [merit for _, merit in found] == pytest.approx([1.2, 1.2, 1.2, 1.3])
+    assert [one.args[0].merit for one in wedged.mock_calls] == [1.0, 0.96, 1.1]
 
 
 def test_of_earlier_times_what_was_finished_by_then_counts():
@@ -122,35 +105,19 @@ def test_of_earlier_times_what_was_finished_by_then_counts():
     assert next(states).walls == 6  # none was begun after the last time
 
 
-@pytest.mark.parametrize(("name", "times"), [("restarts", (2, 4, 9)), ("search", (40, 80, 150))])
-def test_what_is_asked_on_the_way_changes_nothing(name, times):
-    asked = search.looked_at_times(search.WAYS[name], STONES, WALL, times, 1, ticking())
-    alone = looked_for(name, times[-1], ticking())
-    assert [one.walls for one in asked] == sorted(one.walls for one in asked)
-    assert (asked[-1].walls, asked[-1].seconds) == (alone.walls, alone.seconds)
-    assert asked[-1].found.merit == alone.found.merit
-    assert asked[0].walls < alone.walls
-
-
 WALLS = [(BRICKS, BRICKS.stones(None))]
 ONE_WAY = BenchSettings(quick=True, policies=("restarts",))
 
 
-@pytest.fixture
-def done(monkeypatch):
-    """Tasks that were done; their walls have as many stones as their seed says."""
-    tasks = []
+def test_what_the_table_holds_is_not_done_again_and_ways_take_turns(monkeypatch, tmp_path):
+    done, said = [], []
 
     def do(task):
-        tasks.append(task)
+        """A wall of as many stones as the seed says."""
+        done.append(task)
         return task, [result(placed=task.seed) | {"CPU s": each} for each in task.times]
 
     monkeypatch.setattr(search, "do", do)
-    return tasks
-
-
-def test_what_the_table_holds_is_not_done_again_and_ways_take_turns(done, tmp_path):
-    said = []
     kept = replace(ONE_WAY, runs=tmp_path / "runs.csv", say=said.append)
     first = search.searched(WALLS, [1, 2], (1.0, 3.0), kept)
     assert [(task.seed, task.times) for task in done] == [(1, (1.0, 3.0)), (2, (1.0, 3.0))]
@@ -212,10 +179,9 @@ def result(walls=1, **figures):
     return dict.fromkeys(search.FIGURES, 1.0) | spent | figures
 
 
+WEDGED = result(17, placed=58, F_SF=0.1 + 0.2, F_AV=None, F_AH=1e-7, merit=-1.25)
 RUNS = {
-    SearchRun("rubble, 60, exact", "restarts with wedges", 3, 60.0): result(
-        17, placed=58, F_SF=0.1 + 0.2, F_AV=None, F_AH=1e-7, merit=-1.25
-    ),
+    SearchRun("rubble, 60, exact", "restarts with wedges", 3, 60.0): WEDGED,
     SearchRun("R, raster", "search", 4, 0.5): result(1, placed=34),
 }
 
@@ -228,23 +194,18 @@ def test_what_is_read_is_what_was_written_and_the_last_of_two_equal_runs_counts(
     assert search.read_results(path) == RUNS
     lines = path.read_text(encoding="utf-8").splitlines()
     assert (lines[0], len(lines)) == (",".join(search.KINDS), 3)
-    (run, first), (_, second) = RUNS.items()
-    search.append_results(path, [(run, second)])
-    assert search.read_results(path)[run] == second
-    words = search.in_words(first, 60)
+    run, other = RUNS
+    search.append_results(path, [(run, RUNS[other])])
+    assert search.read_results(path)[run] == RUNS[other]
+    words = search.in_words(WEDGED, 60)
     assert words.startswith("58 of 60 stones, F_SF 0.3, F_AV -, F_AH 1e-07, ")
     assert words.endswith("merit -1.25, 17 walls")
-
-
-@pytest.mark.parametrize(("cell", "line"), [(",60.0,", 2), (",2.5\n", 3)])
-def test_a_table_with_a_wrong_cell_is_refused(cell, line, tmp_path):
-    path = tmp_path / "runs.csv"
-    search.append_results(path, RUNS.items())
-    before, mark, after = path.read_text(encoding="utf-8").rpartition(cell)
-    assert mark
-    path.write_text(f"{before},{cell[-1]}{after}", encoding="utf-8")
-    with pytest.raises(UsageError, match=f"^E148 {path}:{line}: "):
-        search.read_results(path)
+    # A cell without a value is refused where there must be one.
+    text = path.read_text(encoding="utf-8")
+    for number, cell in ((3, ",0.5,"), (2, ",2.5\n")):
+        path.write_text(text.replace(cell, f",{cell[-1]}"), encoding="utf-8")
+        with pytest.raises(UsageError, match=f"^E148 {path}:{number}: "):
+            search.read_results(path)
 
 
 def test_bricks_fill_their_wall_by_every_method():
@@ -267,13 +228,11 @@ def test_bricks_fill_their_wall_by_every_method():
 
 
 def test_each_time_has_its_medians_and_differences_of_runs_with_its_settings(tmp_path):
+    few, many = result(5, placed=7, F_AV=None), result(8, placed=9, F_AV=3.0)
     by_method = {
         ("restarts, mu = 0.5", 1.0): [result(merit=1.0, F_AH=4.0), result(merit=3.0, F_AH=4.0)],
         ("search, mu = 0.5", 1.0): [result(merit=2.0, F_AH=1.0), result(merit=3.0, F_AH=3.0)],
-        ("restarts, mu = 0.5", 2.0): [
-            result(5, placed=7, F_AV=None),
-            result(8, placed=9, F_AV=3.0),
-        ],
+        ("restarts, mu = 0.5", 2.0): [few, many],
         ("search, mu = 0.5", 2.0): [result(merit=9.0)] * 2,
         ("search", 2.0): [result(merit=7.0)] * 2,  # of other settings
     }
@@ -351,9 +310,7 @@ def test_a_masons_wall_by_both_definitions():
 
 def test_the_masons_walls_are_those_of_the_published_data(data_dir):
     rows = {row["wall"]: row for row in search.masons_walls(BenchSettings(data=data_dir)).records()}
-    for name, figures in {
-        "R": (33.95, 0.59, 51.08, 2.05), "PR": (29.50, 1.50, 39.73, 2.48),
-        "IR": (23.77, 3.69, 31.66, 5.09),
-    }.items():  # fmt: skip
+    for name, *figures in (("R", 33.95, 0.59, 51.08, 2.05), ("PR", 29.50, 1.50, 39.73, 2.48),
+                           ("IR", 23.77, 3.69, 31.66, 5.09)):  # fmt: skip
         found = [rows[name][figure] for figure in ("F_AV", "F_AH", "2nd F_AV", "2nd F_AH")]
         assert found == pytest.approx(figures, abs=0.006)

@@ -11,11 +11,6 @@ from tests.naive import metrics as naive
 from tests.strategies import repeatable
 
 
-def stack(rows, cols, height, width):
-    numbers = np.arange(1, rows * cols + 1, dtype=np.uint32).reshape(rows, cols)
-    return np.kron(numbers, np.ones((height, width), np.uint32))
-
-
 @repeatable(40)
 @given(walls(max_px=22))
 @example(finer_labels(bricks(3, 3, 5, 12)))
@@ -26,17 +21,10 @@ def test_is_its_slow_twin(labels):
     )
 
 
-def test_a_path_cannot_pass_by_the_wall_nor_through_a_slit_at_its_end():
-    assert second_arrangement(np.ones((30, 30), np.uint32)) == (None, None)
-    assert second_arrangement(stack(1, 2, 30, 30))[1] is None
-    assert second_arrangement(stack(2, 1, 30, 30))[0] is None
-    coarse = bricks(4, 3, 6, 14)
-    wall = finer_labels(coarse)
-    np.testing.assert_array_equal(wall, np.kron(coarse, np.ones((3, 3), np.uint32)))
-    assert second_arrangement(np.pad(wall, ((5, 0), (1, 2)))) == second_arrangement(wall)
-
-
-def test_outlines_are_drawn_three_times_as_fine():
+def test_pixels_and_outlines_are_drawn_three_times_as_fine():
+    wall = SimpleNamespace(labels=bricks(4, 3, 6, 14), outlines=None)
+    expected = np.kron(wall.labels, np.ones((3, 3), np.uint32))
+    np.testing.assert_array_equal(finer_picture(wall), expected)
     corners = np.array([[4.0, 2.0], [20.0, 2.0], [20.0, 10.0], [4.0, 10.0]])
     outlines = SimpleNamespace(blocks=((7, corners), (9, corners + np.array([16, -2]))))
     labels = finer_picture(SimpleNamespace(site=Site(20, 8, 0.5), outlines=outlines))

@@ -1,5 +1,3 @@
-"""Tables for a terminal and for other programs, and how sure differences in them are."""
-
 import numpy as np
 import pytest
 from scipy.stats import binom

@@ -16,15 +16,6 @@ from tests.strategies import repeatable, walls
 L_STONE = Stone(9, np.array([[1, 0, 0], [1, 0, 0], [1, 1, 1]], bool))
 
 
-def mirror_of(wall):
-    """The wall of mirrored stones, for comparison only."""
-    mirrored = Wall.empty(wall.site)
-    for p in wall.placements:
-        col = wall.site.width_px - p.col - p.posed.width_px
-        mirrored = mirrored.add(Placement(p.posed.mirrored, p.row, col))
-    return mirrored
-
-
 @repeatable()
 @given(wall=walls())
 def test_a_view_is_of_the_pixels_and_that_from_the_right_of_the_mirrored_wall(wall):
@@ -35,7 +26,11 @@ def test_a_view_is_of_the_pixels_and_that_from_the_right_of_the_mirrored_wall(wa
     for col in range(landscape.width_px):
         rows = np.flatnonzero(wall.occupied[:, col])
         assert landscape.skyline[col] == (rows[0] if rows.size else landscape.height_px)
-    right, left = Landscape.of(wall, "right"), Landscape.of(mirror_of(wall), "left")
+    mirrored = Wall.empty(wall.site)
+    for p in wall.placements:
+        col = wall.site.width_px - p.col - p.posed.width_px
+        mirrored = mirrored.add(Placement(p.posed.mirrored, p.row, col))
+    right, left = Landscape.of(wall, "right"), Landscape.of(mirrored, "left")
     assert np.array_equal(right.occupied, left.occupied)
     assert right.boxes == left.boxes
     assert (right.width_px, right.height_px) == (wall.site.width_px, wall.site.height_px)

@@ -9,9 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy import ndimage
 
-from drystone.io.read_stones import read_stones
 from drystone.kernels.outline import pixel_polygon, rasterise_polygon
-from drystone.kernels.polygons import area_and_centroid, turn
+from drystone.kernels.polygons import turn
 from drystone.model.outline import reach_px, second_moments, solid, stone_outline
 from drystone.model.stone import OUTLINE_TOLERANCE_PX, Stone
 from tests.naive import outline as naive
@@ -19,22 +18,6 @@ from tests.strategies import blobs, holed, joined_masks, masks, repeatable
 
 TOLERANCE = OUTLINE_TOLERANCE_PX
 TOLERANCES = [0.0, 0.1, TOLERANCE, 1.0, 4.0]
-
-
-def pixels(*rows):
-    return np.array([[cell == "#" for cell in row] for row in rows])
-
-
-TOUCHING = {
-    "lying bar": np.ones((1, 40), bool),
-    "other diagonal": pixels("...#", "..#.", ".#..", "#..."),
-    "zigzag": pixels("#.#.#", ".#.#."),
-    "blocks at a corner": pixels("####....", "####....", "####....", "....####", "....####"),
-    "chequered": pixels("##..##", "##..##", "..##..", "..##..", "##..##", "##..##"),
-    "closed by a corner": pixels("###.", "#..#", "####"),
-    "comb": pixels("#########", "#.#.#.#.#", "#.#.#.#.#", "#.#.#.#.#"),
-    "hook": pixels("#######", "#.....#", "#.###.#", "#...#.#", "#####.#"),
-}
 
 
 def check(corners, mask):
@@ -59,12 +42,6 @@ def check(corners, mask):
 )
 def test_outlines_are_simple_and_weigh_what_the_pixels_do(mask, tolerance):
     check(stone_outline(mask, tolerance), mask)
-
-
-@pytest.mark.parametrize("tolerance", TOLERANCES)
-@pytest.mark.parametrize("name", TOUCHING)
-def test_thin_and_touching_pixels_have_outlines(name, tolerance):
-    check(stone_outline(TOUCHING[name], tolerance), TOUCHING[name])
 
 
 @pytest.mark.parametrize("tolerance", TOLERANCES[:3])
@@ -163,8 +140,9 @@ def test_outlines_are_the_same_bits_on_every_machine():
 
 @pytest.mark.parametrize("flip", [(1, 1), (-1, 1), (1, -1), (-1, -1)])
 def test_of_several_pieces_the_largest_counts(flip):
-    mask = pixels("##.......", "##.######", "...######", "...######")[:: flip[0], :: flip[1]]
-    corners = stone_outline(mask, TOLERANCE)
+    mask = np.zeros((4, 9), bool)
+    mask[:2, :2] = mask[1:, 3:] = True
+    corners = stone_outline(mask[:: flip[0], :: flip[1]], TOLERANCE)
     width, height = np.ptp(corners, axis=0).tolist()
     assert (len(corners), width / height) == (4, pytest.approx(2.0))
     assert width * height == pytest.approx(18.0)
@@ -180,20 +158,3 @@ def test_second_moments_are_those_of_the_pixels_and_turn_and_move_as_tensors_do(
     tensor = axes @ (np.inner([x, y], [x, y]) + len(rows) / 12.0 * np.eye(2)) @ axes.T
     found = second_moments(turn(pixel_polygon(mask), angle) + far)
     assert found == pytest.approx((tensor[0, 0], tensor[1, 1], tensor[0, 1]), rel=1e-6, abs=1e-6)
-
-
-@pytest.mark.parametrize(
-    ("name", "mean_corners"), [("R", 4.0), ("PR", 9.0)], ids=["bricks", "rubble"]
-)
-def test_published_stones(data_dir, name, mean_corners):
-    """The stones of R are rectangles of pixels; those of PR are followed to a fraction of one."""
-    stones = read_stones(data_dir / "almeida" / f"{name}.png")
-    corners = []
-    for stone in stones:
-        check(stone.outline, stone.mask)
-        shape = shapely.Polygon(stone.outline + np.array(stone.local_centroid))
-        squares = shapely.Polygon(pixel_polygon(stone.mask))
-        assert shape.exterior.hausdorff_distance(squares.exterior) <= 0.36 + reach_px(TOLERANCE)
-        assert area_and_centroid(stone.outline)[0] == pytest.approx(stone.area_px)
-        corners.append(len(stone.outline))
-    assert np.mean(corners) <= mean_corners

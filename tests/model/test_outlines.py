@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drystone.kernels.coverage import Grid, coverage
+from drystone.kernels.coverage import coverage
 from drystone.model.outlines import Outlines, Shares
 from drystone.model.site import Site
 from tests.polygons import simple_polygons
@@ -44,9 +44,6 @@ def test_shares_are_those_of_every_block_in_the_order_of_placement(polygons, sca
     for array in (found.shares.total, found.shares.largest, found.shares.owners):
         with pytest.raises(ValueError, match="read-only"):
             array[0, 0] = 1
-
-
-Block = tuple[int, Grid, int, int]
 
 
 @st.composite

@@ -19,12 +19,9 @@ def test_adding_paints_stone_and_wedges_and_keeps_the_old_wall():
     empty = Wall.empty(Site(6, 4))
     wedge = Wedge(4_000_000_000, 70_000, np.ones((1, 2), bool), 3, 1)
     wall = empty.add(Placement(POSED, 1, 1), (wedge,))
-    assert wall.labels.tolist() == [
-        [0, 0, 0, 0, 0, 0],
-        [0, 70_000, 70_000, 70_000, 0, 0],
-        [0, 70_000, 70_000, 70_000, 0, 0],
-        [0, 4_000_000_000, 4_000_000_000, 0, 0, 0],
-    ]
+    painted = np.zeros((4, 6), np.int64)
+    painted[1:3, 1:4], painted[3, 1:3] = 70_000, 4_000_000_000
+    assert np.array_equal(wall.labels, painted)
     assert not empty.occupied.any()
     assert (wall.height_px, empty.height_px) == (3, 0)
     assert [p.stone_id for p in wall.placements] == [70_000]
@@ -74,26 +71,15 @@ def _settled(stone_id, left, low, right, high):
 
 
 def test_with_outlines_a_pixel_is_whose_share_is_largest_where_half_is_covered():
-    site = Site(6, 3, 0.5)
-    one = _settled(3, 0.0, 0.0, 5.3, 4.0)
-    empty = Wall.empty(site, exact=True)
-    first = empty.add(one)
-    # Of the third column .65 is covered.
-    assert first.labels.tolist() == [[0] * 6, [3, 3, 3, 0, 0, 0], [3, 3, 3, 0, 0, 0]]
+    empty, one = Wall.empty(Site(6, 3, 0.5), exact=True), _settled(3, 0.0, 0.0, 5.3, 4.0)
     pixels, corners = np.zeros((0, 0), bool), np.array([[8.2, 0], [9.2, 0], [9.2, 2]])
     wedges = Wedge(90, 9, pixels, 3, 0, corners), Wedge(91, 9, pixels, 3, 0)
-    second = first.add(_settled(9, 5.3, 0.0, 8.2, 2.0), wedges)
-    assert second.labels.tolist() == [
-        [0] * 6,
-        [3, 3, 3, 0, 0, 0],
-        # The third is shared, most of it the first stone's; the fifth is less than half full.
-        [3, 3, 3, 9, 0, 0],
-    ]
-    third = second.add(_settled(5, 5.31, 2.1, 8.3, 4.3))
-    assert third.labels[1].tolist() == [3, 3, 3, 5, 0, 0]
+    wall = empty.add(one).add(_settled(9, 5.3, 0.0, 8.2, 2.0), wedges)
+    # The third column is shared, most of it the first stone's; the fifth is less than half full.
+    assert wall.labels.tolist() == [[0] * 6, [3, 3, 3, 0, 0, 0], [3, 3, 3, 9, 0, 0]]
     assert not empty.occupied.any()
-    assert third.exact.ids == (3, 9, 90, 5)
-    assert third.wedges == wedges
+    assert wall.exact.ids == (3, 9, 90)
+    assert wall.wedges == wedges
+    assert wall.height_px == 2
     (block, kept), (other, of_wedge) = outlined(one, wedges)
     assert (block, other, of_wedge is corners, kept is one.exact.corners) == (3, 90, True, True)
-    assert third.height_px == 2

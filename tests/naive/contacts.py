@@ -1,14 +1,11 @@
 """Slow, obvious twins of what finds contacts in label images (§4.2)."""
 
 import math
-from collections import Counter, defaultdict
 from itertools import pairwise
 
 import numpy as np
 from scipy import ndimage
 
-from drystone.contacts import outlines as traced
-from drystone.kernels.segments import fitted_lines
 from tests.naive.statics import diagonal_touches
 
 TOLERANCE_PX = math.sqrt(2.0)
@@ -161,27 +158,3 @@ def pieces_apart(labels):
         if count > 1:
             apart[block] = int(sizes.sum() - sizes.max())
     return apart
-
-
-def outlines_drawn_anew(labels):
-    """Trace all stones, and draw all of them anew as long as one is not sound."""
-    rings, junctions = traced._rings(labels), traced._junctions(labels)
-    pieces = {block: traced._pieces(ring, junctions) for block, ring in rings.items()}
-    uses = Counter(traced._key(p) for mine in pieces.values() for p in mine)
-    ends = defaultdict(list)
-    for piece in uses:
-        ends[piece[0]].append((piece, 0))
-        ends[piece[-1]].append((piece, -1))
-    fits = {p: fitted_lines(np.array(p, float), traced.OUTLINE_TOLERANCE_PX) for p in uses}
-    while True:
-        drawn = {piece: traced._drawn(piece, ends, fits) for piece in uses}
-        outlines, blocky = {}, set()
-        for block, mine in pieces.items():
-            keys = [traced._key(p) for p in mine]
-            free = [uses[key] == 1 and key in fits for key in keys]
-            outlines[block] = traced._assembled(mine, drawn, free, rings[block])
-            if not traced._is_sound(outlines[block], rings[block]):
-                blocky |= set([key for key in sorted(keys, key=len) if key in fits][:1])
-        if not blocky:
-            return outlines
-        fits = {piece: fit for piece, fit in fits.items() if piece not in blocky}

@@ -98,18 +98,12 @@ def percent(lengths, straight):
 
 def path_starts(side):
     side_px = math.ceil(side / PX) + 3
-    starts, px = [], 10
-    while px < side_px - 10:
-        starts.append(px * PX - PX // 2)
-        px += max(1, side_px // 10)
-    return starts
+    return [px * PX - PX // 2 for px in range(10, side_px - 10, max(1, side_px // 10))]
 
 
 def between(one, two):
     """How far two stretches are apart."""
-    if one[0] > two[1]:
-        return one[0] - two[1]
-    return two[0] - one[1] if two[0] > one[1] else 0
+    return max(one[0] - two[1], two[0] - one[1], 0)
 
 
 def positions(poses, posed, gap, width, rules):

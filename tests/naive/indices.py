@@ -1,7 +1,7 @@
 """Slow, obvious twins of the indices, from label images and from the formulas of §3.5."""
 
 import math
-from dataclasses import dataclass
+from types import SimpleNamespace
 
 import numpy as np
 from shapely import affinity
@@ -9,24 +9,11 @@ from shapely import affinity
 from tests.naive.raster import polygon_of
 
 
-@dataclass(frozen=True)
-class Extent:
-    """Extent of a stone's pixels in the wall frame, y up."""
-
-    x0: int
-    x1: int
-    y0: int
-    y1: int
-
-
 def extent_of(pixels):
-    """Extent of the set pixels of a wall image."""
-    rows, cols = np.nonzero(pixels)
-    height = pixels.shape[0]
-    return Extent(
-        int(cols.min()), int(cols.max()) + 1, height - int(rows.max()) - 1,
-        height - int(rows.min()),
-    )  # fmt: skip
+    """Extent of the set pixels of a wall image, in the wall frame, y up."""
+    rows, cols = np.nonzero(pixels[::-1])
+    x0, x1, y0, y1 = (int(end) for one in (cols, rows) for end in (one.min(), one.max() + 1))
+    return SimpleNamespace(x0=x0, x1=x1, y0=y0, y1=y1)
 
 
 def painted(shape, mask, row, col):

@@ -23,10 +23,3 @@ def neck_width(mask):
         if sum(part.sum() >= 0.15 * (depth > half).sum() for part in thick) > 1:
             return 2 * half
     return None
-
-
-def index_of(labels):
-    """1 + position of every value among the sorted different values."""
-    values = sorted(set(labels.ravel().tolist()))
-    place = {value: i + 1 for i, value in enumerate(values)}
-    return np.array([[place[v] for v in row] for row in labels.tolist()]), values

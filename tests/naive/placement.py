@@ -67,13 +67,8 @@ def gap_beside(occupied, mask, at):
 
 def void_below(occupied, mask, at):
     """Empty pixels between a stone and the first thing below it, for a stone open from above."""
-    empty = 0
-    for j in range(mask.shape[1]):
-        row = at[0] + int(np.flatnonzero(mask[:, j])[-1]) + 1
-        while row < occupied.shape[0] and not occupied[row, at[1] + j]:
-            empty += 1
-            row += 1
-    return empty
+    turned = at[1], len(occupied) - at[0] - len(mask)
+    return gap_beside(np.rot90(occupied, -1), np.rot90(mask, -1), turned)
 
 
 def areas_by_convolution(scene, mask):

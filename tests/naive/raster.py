@@ -29,12 +29,9 @@ def coverage(mask, centre, angle_deg, scale, phase, window):
 
 def second_moment_eccentricity(mask):
     """Focal distance over major axis of the ellipse of equal second moments (§3.4)."""
-    rows, cols = np.nonzero(mask)
-    # Four quarters of every pixel instead of its own moment: converges to the unit square.
-    fine = (np.arange(64) + 0.5) / 64
-    x = (cols[:, None, None] + fine[None, :, None] + 0 * fine[None, None, :]).ravel()
-    y = (rows[:, None, None] + 0 * fine[None, :, None] + fine[None, None, :]).ravel()
-    small, large = np.linalg.eigvalsh(np.cov(x, y, bias=True))
+    # Parts of every pixel instead of its own moment: converges to the unit square.
+    fine = np.argwhere(np.kron(mask, np.ones((64, 64))))
+    small, large = np.linalg.eigvalsh(np.cov(fine.T, bias=True))
     return float(np.sqrt(1 - small / large))
 
 

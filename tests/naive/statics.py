@@ -41,19 +41,25 @@ def contact_matrices(model):
     return normal, tangent
 
 
+def cones(model):
+    """How forces along both edges of the friction cone of every contact point act, and its mu."""
+    normal, tangent = contact_matrices(model)
+    mu = np.array([model.friction(i) for i in model.interfaces for _ in i.points])
+    edges = np.stack((normal + mu * tangent, normal - mu * tangent), axis=2)
+    return edges.reshape(len(edges), -1), mu
+
+
 def alphas_by_linprog(model):
     """alpha to the left and right, each from the start; None when the blocks do not stand.
 
     Unknown are alpha and the forces along both edges of the friction cone of every contact point;
     mean weight and mean area of the blocks are 1.
     """
-    normal, tangent = contact_matrices(model)
-    mu = np.array([model.friction(i) for i in model.interfaces for _ in i.points])
-    live, dead = np.zeros((2, len(normal)))
+    edges, _ = cones(model)
+    live, dead = np.zeros((2, len(edges)))
     weights = np.array([block.weight for block in model.blocks])
     live[0::3] = dead[1::3] = weights / weights.mean()
-    edges = np.stack((normal + mu * tangent, normal - mu * tangent), axis=2)
-    matrix = np.column_stack((live, edges.reshape(len(dead), -1)))
+    matrix = np.column_stack((live, edges))
     matrix[2::3] /= np.mean([block.area for block in model.blocks]) ** 0.5
     matrix = csc_array(matrix)
     costs = np.zeros(matrix.shape[1])
@@ -73,11 +79,9 @@ def alphas_by_linprog(model):
 
 def least_wedge_loads(model):
     """What each block has to bear from above at least, from the start; none bears less than 0."""
-    normal, tangent = contact_matrices(model)
+    edges, mu = cones(model)
     faces = [face for face in model.interfaces for _ in face.points]
-    mu = np.array([model.friction(face) for face in faces])
-    edges = np.stack((normal + mu * tangent, normal - mu * tangent), axis=2)
-    matrix = np.column_stack((edges.reshape(len(edges), -1), np.zeros(len(edges))))
+    matrix = np.column_stack((edges, np.zeros(len(edges))))
     dead = np.zeros(len(matrix))
     dead[1::3] = [block.weight for block in model.blocks]
     loads = {}

@@ -11,29 +11,26 @@ NEAR = 1e-7
 
 
 def chords(corners):
-    """Upright lines through a polygon: x, and y of the ends of the pieces inside, low to high."""
+    """Upright lines through a polygon: x, lowest and highest y, and the shortest piece of all."""
     polygon = shapely.Polygon(corners)
     left, low, right, high = polygon.bounds
     beside = np.concatenate([corners[:, 0] - NEAR, corners[:, 0] + NEAR])
     x = np.concatenate([np.linspace(left + NEAR, right - NEAR, COLUMNS), beside])
     x = np.sort(x[(x > left) & (x < right)])
-    found = []
-    for at in x.tolist():
-        line = shapely.LineString([(at, low - 1.0), (at, high + 1.0)])
-        pieces = shapely.get_parts(line.intersection(polygon))
-        found.append(sorted((p.bounds[1], p.bounds[3]) for p in pieces if p.length > 0.0))
-    ends = [[pieces[0][0], pieces[-1][1], min(b - a for a, b in pieces)] for pieces in found]
-    return x, np.array(ends)
+    lines = shapely.linestrings([[(at, low - 1.0), (at, high + 1.0)] for at in x])
+    inside = shapely.intersection(lines, polygon)
+    pieces = shapely.length(shapely.get_parts(inside))
+    return x, shapely.bounds(inside)[:, [1, 3]], pieces[pieces > 0.0].min()
 
 
 def measures(corners):
     """Width, height, thickness, area, slopes and bend of a wedge."""
-    x, ends = chords(corners)
+    x, ends, thickness = chords(corners)
     width = float(np.ptp(corners[:, 0]))
     found = {
         "width": width,
         "height": float(np.ptp(corners[:, 1])),
-        "thickness": float(ends[:, 2].min()),
+        "thickness": float(thickness),
         "area": float(shapely.Polygon(corners).area),
         "bend": 0.0,
     }
@@ -66,10 +63,9 @@ def covered(wedge, others):
     """Share of the rows of a wedge in which something lies to the left of it, and to the right."""
     shapes = shapely.union_all([shapely.Polygon(other) for other in others])
     left, low, right, high = shapely.Polygon(wedge).bounds
-    hit = [0, 0]
-    for y in (low + (np.arange(ROWS) + 0.5) / ROWS * (high - low)).tolist():
-        rays = ((left, -1e4), (right, 1e4))
-        for side, (x, far) in enumerate(rays):
-            ray = shapely.LineString([(x + math.copysign(NEAR, far), y), (far, y)])
-            hit[side] += bool(ray.intersection(shapes).length > 0.0)
-    return hit[0] / ROWS, hit[1] / ROWS
+    heights = low + (np.arange(ROWS) + 0.5) / ROWS * (high - low)
+    found = []
+    for start, far in ((left - NEAR, -1e4), (right + NEAR, 1e4)):
+        rays = shapely.linestrings([[(start, y), (far, y)] for y in heights])
+        found.append(np.mean(shapely.length(shapely.intersection(rays, shapes)) > 0.0))
+    return found

@@ -188,20 +188,16 @@ def table(places):
     return SimpleNamespace(ids=tuple(places), poses=lambda: np.array(list(places.values())))
 
 
-def test_the_largest_way_counts_and_not_the_last():
-    watch = Watch(SCENE)
-    ways = [watch.look(table({3: (x, 0.5, 0.0)})) for x in (0.5, 1.5, 0.75)]
-    assert ways == pytest.approx([0.0, 4.0, 1.0])
-    assert (watch.moves[3], watch.turns_deg[3]) == pytest.approx((4.0, 0.0))
+@given(st.lists(st.tuples(st.floats(-2, 2), st.floats(-2, 2), st.floats(-7, 7)), min_size=1))
+def test_the_largest_way_of_the_furthest_corner_counts_and_not_the_last(poses):
+    watch, found, expected = Watch(SCENE), [], []
+    for along, up, angle in poses:
+        found.append(watch.look(table({3: (0.5 + along, 0.5 + up, angle)})))
+        turn = np.exp(1j * angle) - 1
+        ends = [4 * (along + up * 1j) + turn * (x + 1j * y) for x in (-2, 2) for y in (-2, 2)]
+        expected.append(max(map(abs, ends)))
+    assert found == pytest.approx(expected)
+    largest = max(expected), max(abs(np.degrees(angle)) for _, _, angle in poses)
+    assert (watch.moves[3], watch.turns_deg[3]) == pytest.approx(largest)
     # The other one has not come yet.
     assert (watch.moves[5], watch.turns_deg[5]) == (0.0, 0.0)
-    watch.look(table({3: (0.5, 0.5, -2 * np.pi)}))
-    assert watch.turns_deg[3] == pytest.approx(360.0)
-
-
-@given(st.floats(-2, 2), st.floats(-2, 2), st.floats(-3, 3))
-def test_of_a_moving_block_the_furthest_corner_counts(along, up, angle):
-    found = Watch(SCENE).look(table({3: (0.5 + along, 0.5 + up, angle)}))
-    turn = np.exp(1j * angle) - 1
-    ends = [4 * (along + up * 1j) + turn * (x + 1j * y) for x in (-2, 2) for y in (-2, 2)]
-    assert found == pytest.approx(max(map(abs, ends)))

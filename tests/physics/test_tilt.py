@@ -67,12 +67,16 @@ def test_concave_stones_keep_their_hollow():
     assert trial.alpha > 0.7
 
 
-def test_what_does_not_stand_or_never_falls_has_no_alpha():
-    trial = tilt_once(scene_of((0, 0, 1, 1), (0.6, 1, 1, 1), mu=0.6), "left")
+def test_what_does_not_stand_has_no_alpha_and_what_never_falls_or_moves_says_so():
+    hanging = scene_of((0, 0, 1, 1), (0.6, 1, 1, 1), mu=0.6)
+    trial = tilt_once(hanging, "left")
     assert (trial.alpha, trial.first_motion, trial.fell_at_rest) == (None, None, True)
+    assert shake_once(hanging) is None
     flat, settings = scene_of((0, 0, 2, 1), mu=0.58), TiltSettings(greatest=0.3)
     trial = tilt_once(flat, "right", None, settings)
     assert (trial.alpha, trial.fell_at_rest) == (None, False)
+    shaking = ShakeSettings(period=4.0, cycles=1, greatest=0.2)
+    assert shake_once(flat, None, shaking) == pytest.approx(0.2)
 
 
 def test_what_rocks_comes_to_rest():
@@ -168,12 +172,6 @@ def test_closed_forms_of_shaking():
         pga_g = shake_once(scene, None, SLOW)
         # Never earlier, but for a step; later by what it takes to get as far as the limit.
         assert expected - SLOW.fine <= pga_g <= 1.03 * expected + SLOW.fine, name
-
-
-def test_what_does_not_stand_has_no_amplitude_and_what_never_moves_stands_all():
-    assert shake_once(scene_of((0, 0, 1, 1), (0.6, 1, 1, 1), mu=0.6)) is None
-    settings = ShakeSettings(period=4.0, cycles=1, greatest=0.2)
-    assert shake_once(scene_of((0, 0, 4, 1), mu=0.9), None, settings) == pytest.approx(0.2)
 
 
 def test_only_what_is_watched_counts():

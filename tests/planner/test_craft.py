@@ -1,19 +1,21 @@
-"""The craft terms of an action, by hand, and what is known of the stone set as a whole."""
+"""The craft terms of an action, and what is known of the stone set as a whole."""
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drystone import Planner, PlannerSettings, Site, Stone
+from drystone import Planner, PlannerSettings, Site
 from drystone.model.landscape import Landscape
 from drystone.model.placement import Placement, Wedge
-from drystone.model.wall import Group, Wall
+from drystone.model.wall import Group
 from drystone.planner.craft import PoseCosts, action_craft, place_cost, pose_cost
 from drystone.planner.stock import Rest, Stock
 from drystone.planner.workshop import Workshop
 from drystone.poses import PoseBook
 from drystone.selection.scored import PIN_BONUS, ScoreSettings, craft_cost
+from tests.naive import indices
+from tests.naive.placement import gap_beside, void_below
 from tests.planner.scenes import blocks
 from tests.strategies import posed_on_walls, repeatable
 
@@ -21,97 +23,67 @@ STOCK = Stock(narrowest_px=4.0, mean_height_px=5.0, mean_area_px=50.0, median_ar
 SITE = Site(40, 20)
 
 
-def _rest(leaves=0):
-    """Stones that always leave so much of a free length."""
-    return Rest(np.full(21, leaves), np.full(41, leaves))
+def slow_craft(labels, posed, place, wedges_px, rest):
+    """The craft terms of a stone that is placed from the left, on whole images."""
+    row, col = place
+    (height, width), occupied = posed.mask.shape, labels > 0
+    stone = indices.painted(labels.shape, posed.mask, row, col)
+    extent, neighbour = indices.extent_of(stone), indices.left_neighbour(labels, stone)
+    right = min(
+        gap_beside(occupied[:, ::-1], line[None, ::-1], (row + k, labels.shape[1] - col - width))
+        for k, line in enumerate(posed.mask)
+    )
+    tops = posed.mask.argmax(axis=0)
+    if min(extent.x0, labels.shape[1] - extent.x1) < 4:
+        joint = 1.0 - indices.inward_slope(stone, col + posed.anchor[0])
+    else:
+        joint = 1.0 - indices.interlocking(labels, stone, 4)
+    step = 0 if neighbour is None else extent.y1 - indices.extent_of(labels == neighbour).y1
+    return {
+        "height": (extent.y0 + posed.anchor[1]) / 5,
+        "void": (void_below(occupied, posed.mask, place) - wedges_px) / 50,
+        "gap": min(1.0, gap_beside(occupied, posed.mask, place) / 50),
+        "slot": rest.width_px[right] * height / 50,
+        "headroom": rest.height_px[row] * width / 50,
+        "step": abs(step) / 5,
+        "roughness": np.abs(tops - np.median(tops)).mean() / 5,
+        "upright": max(0.0, 1.0 - width / height),
+        "joint": joint,
+        "area": posed.area_px / 50,
+        "thickness": min(height, width) / 5,
+    }
 
 
-def _placed(stone_id, width, height, left, bottom, side="left"):
-    """A block with its left end and its lower edge somewhere."""
-    posed = PoseBook().pose(Stone(stone_id, np.ones((height, width), bool)), 0.0)
-    return Placement(posed, SITE.height_px - bottom - height, left, side)
-
-
-def _craft(blocks, placement, rest=None, wedges=(), side="left"):
-    """The craft of a placement on blocks: width, height, left end and lower edge of each."""
-    wall = Wall.empty(SITE)
-    for stone_id, block in enumerate(blocks, 1):
-        wall = wall.add(_placed(stone_id, *block))
-    group = Group(placement, wedges)
-    return action_craft(Landscape.of(wall, side), group, STOCK, rest or _rest())
-
-
-PILLAR, BED = (10, 5, 0, 0), ((20, 5, 0, 0), (20, 5, 20, 0))
-NOTHING = dict.fromkeys(("void", "gap", "slot", "headroom", "step", "roughness", "upright"), 0.0)
-
-
-@pytest.mark.parametrize(
-    ("blocks", "block", "rest", "expected"),
-    [
-        # A boundary stone whose top does not slope: IS = 0.
-        ([], PILLAR, 0, {**NOTHING, "height": 2.5 / 5, "area": 1.0, "joint": 1.0}),
-        # On the pillar, 4 of 10 columns over nothing: 4 x 5 px; 6 px free on the left, 4 px high.
-        ([PILLAR], (8, 4, 6, 5), 0, {"height": 7 / 5, "void": 4 * 5 / 50, "gap": 6 * 4 / 50}),
-        ([], (8, 8, 30, 0), 0, {"gap": 1.0}),  # it counts for one stone at most
-        ([PILLAR], (10, 8, 10, 0), 0, {"step": 3 / 5}),
-        ([PILLAR], (10, 5, 10, 0), 0, {"step": 0.0}),
-        ([], (10, 8, 10, 0), 0, {"step": 0.0}),  # there is nothing to compare with
-        ([], PILLAR, 3, {"slot": 3 * 5 / 50, "headroom": 3 * 10 / 50}),
-        (BED, (4, 10, 10, 5), 0, {"upright": 1 - 4 / 10, "roughness": 0.0}),
-    ],
+@repeatable(200)
+@given(
+    scene=posed_on_walls(),
+    side=st.sampled_from(["left", "right"]),
+    wedges_px=st.sampled_from([0, 3]),
 )
-def test_craft_of_blocks(blocks, block, rest, expected):
-    craft = vars(_craft(blocks, _placed(9, *block), _rest(rest)))
-    assert {name: craft[name] for name in expected} == pytest.approx(expected)
-
-
-def test_what_a_wedge_fills_and_the_rest_cannot_fill():
-    wedge = Wedge(10, 2, np.ones((5, 3), bool), 15, 11)
-    craft = _craft([PILLAR], _placed(2, 8, 4, 6, 5), wedges=(wedge,))
-    assert craft.void == pytest.approx((4 * 5 - 15) / 50)
-    # The free width on the right is 30, the free height 15.
-    width, height = np.zeros(41, int), np.zeros(21, int)
-    width[30], height[15] = 2, 4
-    craft = _craft([], _placed(1, *PILLAR), Rest(height, width))
-    assert craft.slot == pytest.approx(2 * 5 / 50)
-    assert craft.headroom == pytest.approx(4 * 10 / 50)
-
-
-def test_roughness_and_joint():
-    mask = np.ones((6, 8), bool)
-    mask[:2, :4] = False  # a step of 2 px half way: 1 px on average from the median, 1 px down
-    stepped = PoseBook().pose(Stone(3, mask), 0.0)
-    craft = _craft(BED, Placement(stepped, SITE.height_px - 5 - stepped.height_px, 10))
-    assert craft.roughness == pytest.approx(1 / 5)
-    assert craft.upright == 0
-    # Its ends are 10 and 2 px from the joint at 20, of stones 20 px wide: IWR = (.5 + .1) / 2.
-    assert craft.joint == pytest.approx(1 - 0.3)
-
-
-def test_from_the_right_everything_is_mirrored():
-    left = _craft([PILLAR], _placed(2, 8, 4, 6, 5), _rest(2))
-    placement = _placed(2, 8, 4, SITE.width_px - 6 - 8, 5, "right")
-    assert _craft([(10, 5, 30, 0)], placement, _rest(2), side="right") == left
-
-
-@repeatable(60)
-@given(posed_on_walls(), st.sampled_from(["left", "right"]))
-def test_place_and_pose_cost_what_the_action_costs_but_for_step_and_joint(scene, side):
+def test_craft_is_that_of_whole_images_and_known_before_but_for_step_and_joint(
+    scene, side, wedges_px
+):
+    """From the right all is mirrored; a stone that stays costs what its place and its pose do."""
     wall, posed, row, col = scene
     rest = Rest(np.arange(wall.site.height_px + 1), np.arange(wall.site.width_px + 1) // 2)
-    score = ScoreSettings(thickness=1.5)
     landscape = Landscape.of(wall, side)
-    craft = action_craft(landscape, Group(Placement(posed, row, col, side)), STOCK, rest)
+    wedges = (Wedge(100, 99, np.ones((wedges_px, 1), bool), 0, 0),) if wedges_px else ()
+    craft = action_craft(landscape, Group(Placement(posed, row, col, side), wedges), STOCK, rest)
+    seen, place = landscape.view(posed), (row, landscape.view_col(posed, col))
+    labels = wall.labels if side == "left" else wall.labels[:, ::-1]
+    expected = slow_craft(labels, seen, place, wedges_px, rest)
+    assert vars(craft) == pytest.approx(expected)
     assert min(craft.step, craft.joint) >= 0
-    place = row, landscape.view_col(posed, col)
-    quick = place_cost(landscape, landscape.view(posed), place, STOCK, rest, score)
-    known = quick + pose_cost(posed, STOCK, score)
+    score = ScoreSettings(thickness=1.5)
+    quick = place_cost(landscape, seen, place, STOCK, rest, score)
+    known = quick + pose_cost(posed, STOCK, score) - score.void * wedges_px / 50
     others = score.step * craft.step + score.joint * craft.joint
     assert known + others == pytest.approx(craft_cost(craft, score), abs=1e-9)
 
 
 def test_costs_of_poses_are_those_of_the_weights_of_now():
-    poses = [_placed(1, 20, 5, 0, 0).posed, _placed(2, 4, 10, 0, 0).posed]
+    book = PoseBook()
+    poses = [book.pose(stone, 0.0) for stone in blocks({1: (20, 5), 2: (4, 10)})]
     costs = PoseCosts(STOCK, frozenset({2}))
     for score in (ScoreSettings(), ScoreSettings(area=9.0), ScoreSettings()):
         first, second = (pose_cost(posed, STOCK, score) for posed in poses)

@@ -42,19 +42,22 @@ def in_metres(poses):
     return {i: MeasuredPose(x / PX_PER_M, y / PX_PER_M, a) for i, (x, y, a) in poses.items()}
 
 
+def shown(corners, pose, shape, scale=1.0):
+    """Pixels whose centres are in a shape (shapely), the centroid of which is somewhere, turned."""
+    x, y, angle = pose
+    rows, cols = np.mgrid[0 : shape[0], 0 : shape[1]]
+    turned = affinity.rotate(shapely.Polygon(corners), angle, origin=(0, 0))
+    there = affinity.affine_transform(turned, [scale, 0, 0, scale, x * scale, y * scale])
+    return shapely.contains(there, shapely.points(cols + 0.5, shape[0] - rows - 0.5))
+
+
 def picture(poses, stones, scale):
-    """Draw the stones as a camera sees them: a pixel is of the stone at its centre (shapely)."""
-    height, width = round(95.0 * scale), round(250.0 * scale)
-    if scale == SCALE:
-        height, width = SITE.height_px, SITE.width_px
-    rows, cols = np.mgrid[0:height, 0:width]
-    centres = shapely.points(cols + 0.5, height - rows - 0.5)
-    labels = np.zeros((height, width), np.uint16)
-    for stone_id, (x, y, angle) in poses.items():
-        outline = shapely.Polygon(stones.by_id(stone_id).outline)
-        turned = affinity.rotate(outline, angle, origin=(0, 0))
-        there = affinity.affine_transform(turned, [scale, 0, 0, scale, x * scale, y * scale])
-        labels[shapely.contains(there, centres) & (labels == 0)] = stone_id
+    """Draw the stones of the wall as a camera sees them."""
+    shape = (95, 250) if scale == 1.0 else (SITE.height_px, SITE.width_px)
+    labels = np.zeros(shape, np.uint16)
+    for stone_id, pose in poses.items():
+        seen = shown(stones.by_id(stone_id).outline, pose, shape, scale)
+        labels[seen & (labels == 0)] = stone_id
     return labels
 
 
@@ -151,14 +154,6 @@ def test_a_stone_alone_is_measured_to_less_than_half_a_pixel_and_to_a_degree(sca
         assert turns(place.angle_deg, true[2]) < 1.0
 
 
-def shown(corners, angle_deg, x, y):
-    """A shape as a picture of 80 x 80 px shows it, turned, with its centroid somewhere."""
-    rows, cols = np.mgrid[0:80, 0:80]
-    there = affinity.rotate(shapely.Polygon(corners), angle_deg, origin=(0, 0))
-    there = affinity.translate(there, x, y)
-    return shapely.contains(there, shapely.points(cols + 0.5, 80 - rows - 0.5))
-
-
 def about_its_centroid(*corners):
     return np.array(corners) - shapely.get_coordinates(shapely.Polygon(corners).centroid)
 
@@ -166,7 +161,7 @@ def about_its_centroid(*corners):
 def test_a_stone_is_found_whichever_way_it_is_turned():
     shape = about_its_centroid((0, 0), (40, 0), (40, 12), (20, 16), (0, 30))
     for angle in (-170.0, -60.0, 0.0, 95.0, 180.0):
-        place = fitted(shown(shape, angle, 41.3, 37.8), shape, 1.0, None)
+        place = fitted(shown(shape, (41.3, 37.8, angle), (80, 80)), shape, 1.0, None)
         assert turns(place.angle_deg, angle) < 1.0
         # Straight edges along rows and columns tell where they are to half a pixel.
         assert np.hypot(place.x_px - 41.3, place.y_px - 37.8) < (0.5 if angle % 90 == 0 else 0.3)
@@ -174,7 +169,7 @@ def test_a_stone_is_found_whichever_way_it_is_turned():
     brick = about_its_centroid((0, 0), (40, 0), (40, 20), (0, 20))
     # A brick upside down is the same picture: it is as it was planned.
     for shape, planned_deg, found_deg in ((wedge, -100.0, 33.0), (brick, -145.0, -147.0)):
-        place = fitted(shown(shape, 33.0, 40.2, 39.7), shape, 1.0, planned_deg)
+        place = fitted(shown(shape, (40.2, 39.7, 33.0), (80, 80)), shape, 1.0, planned_deg)
         assert turns(place.angle_deg, found_deg) < 1.0
 
 

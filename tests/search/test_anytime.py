@@ -190,12 +190,6 @@ def test_a_part_of_several_rounds_in_processes_is_a_search_with_a_smaller_budget
     assert same(again.best, timed.best)
 
 
-def test_a_policy_is_not_searched_with_whatever_time_there_is():
-    policy = scenes.greedy({"selection_rule": "lowest"})
-    result = planned_wall(policy, seconds=100.0)
-    assert (result.plan.settings["search"]["budget"], result.choice) == (1, ())
-
-
 @pytest.mark.parametrize(("error", "most"), [(KeyboardInterrupt, 5), (BrokenProcessPool, 3)])
 def test_an_interrupt_and_a_process_that_dies_keep_the_best_wall_so_far(error, most):
     told = []

@@ -65,9 +65,13 @@ def wall_for(stones, share):
 SIZE = wall_for(RUBBLE, 1.024)
 
 
-def test_a_plan_has_every_stone_at_most_once_inside_the_wall():
+def test_equal_seeds_give_equal_plans_with_every_stone_at_most_once_inside_the_wall():
     book = PoseBook()
-    plan = plan_courses(task(RUBBLE.stones, SIZE, 4.0, book=book), 1)
+    one = task(RUBBLE.stones, SIZE, 4.0, book=book)
+    plan = plan_courses(one, 1)
+    assert plan_courses(one, 1) == plan != plan_courses(one, 6)
+    again = resumed(one, plan.courses)
+    assert placed(one, again, evaluate(one.poses, again, one.ground, one.rules)) == plan
     stones = [stone for course in plan.courses for stone in course]
     ids = [stone.stone_id for stone in stones]
     assert len(ids) == len(set(ids)) > len(RUBBLE) // 2
@@ -90,16 +94,6 @@ def test_a_plan_has_every_stone_at_most_once_inside_the_wall():
     assert any(sum(stone.side == "right" for stone in course) > 1 for course in plan.courses)
     means = [np.mean([stone.y_px for stone in course]) for course in plan.courses]
     assert means == sorted(means)
-
-
-def test_equal_seeds_give_equal_plans_and_the_cost_is_that_of_the_plan():
-    one = task(RUBBLE.stones, SIZE, 4.0)
-    plan = plan_courses(one, 5)
-    assert plan_courses(one, 5) == plan != plan_courses(one, 6)
-    again = resumed(one, plan.courses)
-    layout = evaluate(one.poses, again, one.ground, one.rules)
-    assert placed(one, again, layout) == plan
-    assert layout.cost == plan.cost
 
 
 @needs_compiled

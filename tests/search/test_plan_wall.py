@@ -79,9 +79,9 @@ STONES = scenes.rubble(count=5)
 WAYS = {
     "best": {"settings": scenes.greedy(FEW)},
     "one pass in threads": {"settings": scenes.greedy(), "n_jobs": 2, "budget": 1},
-    "pixels": {"settings": scenes.greedy({"geometry": "raster"}), "budget": 1},
+    "pixels": {"settings": scenes.greedy({"geometry": "raster"}), "budget": None},
     "paper": {"settings": method_settings("paper"), "budget": 1},
-    "policy": {"settings": scenes.greedy({"selection_rule": "lowest"}), "budget": 1},
+    "policy": {"settings": scenes.greedy({"selection_rule": "lowest"}), "budget": None},
 }
 
 

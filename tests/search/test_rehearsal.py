@@ -121,45 +121,36 @@ def test_fewer_walls_lose_a_stone_than_in_open_loop():
     assert any(run.again for run in closed)
 
 
-def test_a_stone_whose_place_is_gone_comes_to_lie_on_the_wall():
-    """It was planned in the air beside a wall of one course, which has no other room."""
-    row = [[(k + 1, box(41.0 * k, 0.0))] for k in range(3)]
-    run = rehearse_closed([*row, [(9, box(100.0, 70.0))]], NONE, np.random.default_rng(0))
-    assert fallen(run) == []
-    lies = dict(run.blocks)[9]
-    assert lies[:, 1].min() == pytest.approx(20.0, abs=0.5)
-    # What lies in the wall overlaps nothing.
-    shapes = [shapely.Polygon(corners) for _, corners in run.blocks]
-    assert sum(one.area for one in shapes) == pytest.approx(shapely.union_all(shapes).area)
+NEEDLE = np.array([[-2.0, 220.0], [0.0, 20.0], [2.0, 220.0], [0.0, 420.0]])
+"""It rests on no point."""
 
 
-def test_what_another_throws_down_or_pushes_away_is_taken_up_and_laid_again():
-    """A brick comes onto the end of a plank, or in between two bricks that leave no room."""
-    post, plank = [(1, box(0.0, 0.0, 20.0))], [(2, box(-20.0, 20.0, 60.0, 10.0))]
-    tipped = [post, plank, [(3, box(24.0, 30.0, 20.0, 30.0))]]
-    pushed = [[(k, box(x, 0.0))] for k, x in [(1, 0.0), (2, 64.0), (3, 32.0)]]
-    assert rehearse(tipped, NONE, np.random.default_rng(0)).first_fall is not None
-    for groups, again in ((tipped, 0), (pushed, 2)):
-        run = rehearse_closed(groups, NONE, np.random.default_rng(0))
-        assert (sorted(i for i, _ in run.blocks), run.again) == ([1, 2, 3], again)
-
-
-def test_what_lies_in_the_way_of_a_stone_is_taken_up_for_it():
-    """A tall stone was planned in the air; then another comes where alone it can stand."""
-    tall, later = box(42.0, 17.0, 40.0, 110.0), box(42.0, 0.0, 60.0, 40.0)
-    groups = [[(1, box(0.0, 0.0, 40.0, 36.0))], [(2, tall)], [(3, later)]]
+@pytest.mark.parametrize(
+    ("boxes", "again", "lost", "lowest"),
+    [
+        # Planned in the air beside a wall of one course, which has no other room.
+        ([box(0, 0), box(41, 0), box(82, 0), box(100, 70)], 0, [], {4: 20.0}),
+        # Onto the end of a plank on a post, or in between two bricks that leave no room.
+        ([box(0, 0, 20), box(-20, 20, 60, 10), box(24, 30, 20, 30)], 0, [], {}),
+        ([box(0, 0), box(64, 0), box(32, 0)], 2, [], {}),
+        # A tall one planned in the air; then another comes where alone it can stand.
+        ([box(0, 0, 40, 36), box(42, 17, 40, 110), box(42, 0, 60, 40)], 1, [], {2: 0.0}),
+        # Lying it would be longer than the wall.
+        ([box(-20, 0), NEEDLE], 0, [2], {}),
+    ],
+    ids=["in the air", "thrown down", "pushed away", "in the way", "no place"],
+)
+def test_what_falls_or_is_in_the_way_is_laid_again_elsewhere(boxes, again, lost, lowest):
+    groups = [[(number, corners)] for number, corners in enumerate(boxes, 1)]
+    assert rehearse(groups, NONE, np.random.default_rng(0)).first_fall is not None
     run = rehearse_closed(groups, NONE, np.random.default_rng(0))
-    assert fallen(run) == []
-    assert run.again > 0
-    assert dict(run.blocks)[2][:, 1].min() == pytest.approx(0.0, abs=0.1)
-
-
-def test_a_stone_without_any_place_is_not_in_the_wall():
-    """A needle rests on no point, and lying it would be longer than the wall."""
-    needle = [(2, np.array([[-2.0, 220.0], [0.0, 20.0], [2.0, 220.0], [0.0, 420.0]]))]
-    run = rehearse_closed([[(1, box(-20.0, 0.0))], needle], NONE, np.random.default_rng(0))
-    assert fallen(run) == [2]
-    assert [i for i, _ in run.blocks] == [1]
+    blocks = dict(run.blocks)
+    assert (fallen(run), run.again) == (lost, again)
+    assert blocks.keys() | {*lost} == {*range(1, len(boxes) + 1)}
+    assert {i: blocks[i][:, 1].min() for i in lowest} == pytest.approx(lowest, abs=0.1)
+    # What lies in the wall overlaps nothing.
+    shapes = [shapely.Polygon(corners) for corners in blocks.values()]
+    assert sum(one.area for one in shapes) == pytest.approx(shapely.union_all(shapes).area)
 
 
 def test_a_wall_as_it_was_built_is_tilted():

@@ -129,19 +129,6 @@ def ramp(slope_deg):
     return np.array([[20.0, CLEAR], [120.0, CLEAR], [120.0, top]])
 
 
-@pytest.mark.parametrize("method", METHODS)
-@pytest.mark.parametrize(("slope_deg", "rests"), [(20.0, True), (27.0, False), (45.0, False)])
-def test_what_slides_away_is_nowhere(method, slope_deg, rests):
-    at, stone = (70.0, 50.0 * math.tan(math.radians(slope_deg)) + 8.0), turned(BRICK, slope_deg)
-    found = rested(at, ramp(slope_deg), stone=stone, method=method, margin=0.3)
-    assert (found is not None) == rests
-    if found is not None:
-        # Gravity may lean until the friction angle is reached.
-        lean = math.tan(math.atan(MU) - math.radians(slope_deg))
-        assert found.margin == pytest.approx(lean / MU, abs=1e-3)
-        assert found.angle_deg == pytest.approx(slope_deg, abs=0.3)
-
-
 def test_it_does_not_turn_further_than_it_may_and_touches_down_without_balance():
     tilted = turned(BRICK, 5.0)
     assert rested((50.0, 12.0), stone=tilted, max_turn_deg=4.0) is None

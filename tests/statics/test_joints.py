@@ -32,20 +32,16 @@ def test_head_joints_without_friction_weaken_a_bond_and_only_them():
     assert lateral_resistance(smooth).value < lateral_resistance(model).value - 1e-3
 
 
-def test_friction_of_a_pair_from_a_file():
-    pair, friction = [[0, 0, 2, 1], [0, 1, 2, 1]], [{"between": [0, 1], "mu": 0.2}]
-    data = {"blocks_xywh": pair, "mu": 0.9, "friction": friction}
-    model = model_from_json(data)
-    assert {(i.block, i.other): i.mu for i in model.interfaces} == {(1, GROUND): 0.2, (2, 1): None}
-    assert limit_load(model, "right").alpha == pytest.approx(0.2)
-
-
 def test_blocks_that_nothing_carries():
     assert loose_blocks(boxes([0, 0, 3, 3], [5, 6, 3, 3], [8, 6, 4, 3])) == (2, 3)
     assert loose_blocks(boxes([0, 3, 1, 1], fixed=(1,))) == ()
 
 
-def test_what_is_said_of_one_joint_wins_over_what_is_said_of_all_head_joints():
+def test_a_file_tells_the_friction_of_a_pair_of_head_joints_and_of_one_joint_which_wins():
+    pair, friction = [[0, 0, 2, 1], [0, 1, 2, 1]], [{"between": [0, 1], "mu": 0.2}]
+    model = model_from_json({"blocks_xywh": pair, "mu": 0.9, "friction": friction})
+    assert {(i.block, i.other): i.mu for i in model.interfaces} == {(1, GROUND): 0.2, (2, 1): None}
+    assert limit_load(model, "right").alpha == pytest.approx(0.2)
     upright = {"between": [2, 1], "points": [[1, 0], [1, 1]], "normal": [1, 0]}
     data = {"blocks_xywh": [[0, 0, 1, 1], [1, 0, 1, 1]], "mu_head": 0.1}
     assert [i.mu for i in model_from_json({**data, "interfaces": [upright]}).interfaces] == [0.1]

@@ -271,14 +271,6 @@ def test_what_a_tilted_base_leaves_is_the_rest_of_the_angle(angle_deg):
     assert (both.left.alpha, both.right.alpha) == pytest.approx((left, right))
 
 
-def test_a_load_that_grows_with_height_overturns_sooner():
-    """Forces w alpha y / 2 at heights 1 and 3: moment alpha w (1 + 9) / 2 against 2 w / 2."""
-    model = boxes([0, 0, 1, 2], [0, 2, 1, 2], mu=0.9)
-    assert limit_load(
-        model, "right", other_loads.growing_with_height(model)
-    ).alpha == pytest.approx(1 / 5)
-
-
 def test_what_is_fixed_or_below_the_ground_is_not_pushed_by_a_load_that_grows_with_height():
     """All of the weight of the others is."""
     heights, fixed = (3.0, -3.0, 1.0, 9.0), (False, False, False, True)

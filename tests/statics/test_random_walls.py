@@ -107,8 +107,6 @@ def test_without_dilatancy_random_walls_carry_no_more(labels, mu):
             assert result.status in (LimitStatus.UNSTABLE, LimitStatus.FAILED)
 
 
-RING = picture([7, 7, 7, 7], [7, 0, 0, 7], [7, 0, 0, 7], [7, 7, 7, 7])
-LOOSE = picture([7] * 5, [7, 0, 0, 0, 7], [7, 0, 3, 0, 7], [7, 0, 0, 0, 7], [7] * 5)
 HELD = picture([7] * 5, [7, 0, 0, 0, 7], [7, 0, 0, 0, 7], [7, 0, 3, 0, 7], [7] * 5)
 PIECES = picture([5, 5, 0], [0, 0, 0], [5, 0, 0])
 
@@ -116,21 +114,15 @@ PIECES = picture([5, 5, 0], [0, 0, 0], [5, 0, 0])
 @pytest.mark.parametrize(
     ("labels", "mu", "alphas"),
     [
-        (picture([1]), 0.58, (0.58, 0.58)),  # one pixel slides, or turns about its edge
-        (picture([1]), 50.0, (1.0, 1.0)),
+        (picture([1]), 0.58, (0.58, 0.58)),  # one pixel slides
         (picture(*[[1]] * 9), 0.58, (1 / 9, 1 / 9)),  # one pixel wide: a needle
-        (picture([3], [2], [1]), 0.58, (1 / 3, 1 / 3)),
         (picture([1, 2, 3]), 0.0, (0.0, 0.0)),
         (picture(*[[2**32 - 1] * 2] * 4), 0.9, (0.5, 0.5)),
-        (RING, 0.58, (0.58, 0.58)),
         (HELD, 0.3, (0.3, 0.3)),
         (PIECES, 50.0, (5 / 11, 1 / 11)),  # the piece in the air is a part of the other
-        (picture([1], [0], [2]), 50.0, (None, None)),
         (picture([2, 1, 3], [2, 0, 3]), 0.0, (None, None)),  # between pillars, without friction
         (stacked((20, 20, 0), (20, 20, 10)), 0.9, (0.75, 0.0)),  # just balanced
-        (picture([2, 1, 0], [2, 0, 0]), 50.0, (None, None)),  # sticks to the side of one
         (picture([0, 1], [2, 0]), 50.0, (None, None)),  # corner on corner
-        (LOOSE, 50.0, (None, None)),  # in the air of a hole
     ],
 )
 def test_walls_of_a_few_pixels(labels, mu, alphas):

@@ -14,6 +14,7 @@ from drystone.model.wedge_shape import WedgeSettings
 from drystone.planner.settings import PlannerSettings
 from drystone.settle.placing import settled_wedge
 from tests.planner.scenes import settled_at, stones_of_masks
+from tests.polygons import box
 from tests.verify.examples import LAID, SLAB, WALL_PX, WEDGE, plan_of, stone_set
 
 GAP_PX = 0.01
@@ -29,10 +30,7 @@ SETTINGS = PlannerSettings(
 
 @cache
 def exact_example(scale=1.0, px_per_m=None, *, count=5):
-    """Return a slab on two pillars with a wedge on the lower one, an L beside them turned by 90.
-
-    Only the first `count` stones of these.
-    """
+    """Return the wall of `example` on outlines, or its first `count` stones."""
     stones, site = stone_set(), Site.from_source(*WALL_PX, scale, px_per_m)
     wall = Wall.empty(site, exact=True)
     for stone_id, angle_deg, left, bottom in LAID[:count]:
@@ -58,14 +56,10 @@ def with_stone(wall, stones, turned, corner):
     placement = settled_at(wall, stones.by_id(stone_id), corner, angle_deg, side)
     if stone_id != SLAB:
         return wall.add(placement)
+    # Between the lower pillar and the slab, 8 px wide and nearly 4 px high.
+    wedge = on_grid(box(42, 16 + 2 * GAP_PX, 50, 20 + GAP_PX))
     above = wall.add(placement).outlines
-    return wall.add(placement, (settled_wedge(above, wall.site, WEDGE, SLAB, wedge_px()),))
-
-
-def wedge_px():
-    """The wedge between the lower pillar and the slab, 8 px wide and nearly 4 px high."""
-    low, high = 16 + 2 * GAP_PX, 20 + GAP_PX
-    return on_grid(np.array([[42.0, low], [50.0, low], [50.0, high], [42.0, high]]))
+    return wall.add(placement, (settled_wedge(above, wall.site, WEDGE, SLAB, wedge),))
 
 
 def block_model(made):

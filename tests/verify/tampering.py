@@ -37,12 +37,6 @@ def without(plan, piece):
     return replace(plan, steps=tuple(replace(s, step=n) for n, s in enumerate(steps, 1)))
 
 
-def with_setting(plan, group, **values):
-    return replace(
-        plan, settings={**plan.settings, group: {**plan.settings.get(group, {}), **values}}
-    )
-
-
 def swapped(plan, first, second):
     plan = changed(changed(plan, first, stone=999), second, stone=first)
     return changed(plan, 999, stone=second)

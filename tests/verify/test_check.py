@@ -12,24 +12,13 @@ from drystone.statics.limit import lateral_resistance
 from drystone.statics.result import LimitStatus
 from drystone.verify import check, claims
 from drystone.verify.check import PrefixAlpha, check_plan
-from drystone.verify.replay import PENETRATION_PX, rebuild_wall
+from drystone.verify.replay import PENETRATION_PX
 from tests.planner.scenes import read_again
 from tests.verify.exact_examples import GAP_PX, block_model, exact_example, hanging_example
 from tests.verify.examples import L_STONE, SLAB, WEDGE, example
-from tests.verify.tampering import (
-    changed,
-    codes,
-    moved,
-    reshaped,
-    step_of,
-    swapped,
-    with_setting,
-    without,
-)
+from tests.verify.tampering import changed, codes, moved, reshaped, step_of, swapped, without
 
 WHOLE = {"raster": example(), "exact": exact_example()}
-
-
 # Plans may leave out what they claim without dilatancy.
 NOTHING = dict.fromkeys(("F_LR_coulomb", "alpha_left_coulomb", "alpha_right_coulomb"))
 MADE = {
@@ -68,8 +57,6 @@ def test_true_plan_passes_in_any_unit_and_at_any_scale(make, scale, px_per_m):
     assert report.area_error == 0
     assert report.prefixes[0].alpha_left == pytest.approx(0.58)  # a square block slides
     assert [prefix.step for prefix in report.prefixes] == [1, 2, 4, 5, 6]
-    rebuilt = rebuild_wall(plan, made.stones).placements
-    assert [p.side for p in rebuilt] == [p.side for p in made.wall.placements]
     if make is exact_example:
         assert report.geometry == report.as_dict()["geometry"] == "exact"
         assert (report.overlap_depth, report.overlap_depth_at, report.buried) == (0.0, None, ())
@@ -96,14 +83,12 @@ ONLY_BOTH = {
     "settings": (lambda p: setting(p, wings=2), {"E217"}),
     "source centroid": (lambda p: changed(p, 3, source_centroid=(12.0, 13.5)), {"E225"}),
     "alpha of a stone": (lambda p: changed(p, 3, alpha_left=0.580001), {"E231"}),
-    "alpha of a wedge": (lambda p: changed(p, WEDGE, alpha_right=None), {"E231"}),
     "cluster": (lambda p: changed(p, 3, cluster=77), {"E233"}),
 }  # fmt: skip
 
 # Changes with more than one consequence: these codes are among those found.
 AMONG_BOTH = {
     "stone lifted by 1 px": (lambda p: moved(p, L_STONE, 0, 1), {"E230", "E236"}),
-    "first stone lifted by 1 px": (lambda p: moved(without(p, SLAB), 3, 0, 1), {"E230"}),
     "stone turned by 180 degrees": (lambda p: changed(p, L_STONE, angle_deg=-90.0), {"E236"}),
     "ids of equal boxes swapped": (lambda p: swapped(p, L_STONE, 300), {"E225", "E236"}),
     "stone that is not there": (lambda p: changed(p, 3, stone=4), {"E212", "E216"}),
@@ -135,7 +120,6 @@ ONLY_RASTER = {
     "wedge far outside": (lambda p: reshaped(p, lambda points: points + 1e9), {"E220"}),
     "rotation moves": (lambda p: changed(p, 3, rotation_moves=1), {"E235"}),
     "too many rotation moves": (lambda p: changed(p, 3, rotation_moves=99), {"E235"}),
-    "a banned stone": (lambda p: setting(p, ban=[9, SLAB]), {"E239"}),
     "course height of an inner stone": (lambda p: changed(p, L_STONE, course_height=9.0), {"E232"}),
     "course height left out": (lambda p: changed(p, 3, course_height=None), {"E232"}),
 }  # fmt: skip
@@ -165,11 +149,11 @@ ONLY_EXACT = {
     "wedge clockwise": (lambda p: reshaped(p, lambda w: w[::-1]), {"E222"}),
     "wedge that crosses itself": (lambda p: reshaped(p, lambda w: w[[0, 2, 1, 3]]), {"E222"}),
     "wedge without area": (lambda p: reshaped(p, lambda w: w * (1, 0)), {"E222"}),
-    "wedge too small": (lambda p: with_setting(p, "wedge", thickness=0.5), {"E224"}),
-    "wedge too high": (lambda p: with_setting(p, "wedge", height=0.1), {"E224"}),
+    "wedge too small": (lambda p: setting(p, wedge={"height": 0.4, "thickness": 0.5}), {"E224"}),
+    "wedge too high": (lambda p: setting(p, wedge={"height": 0.1}), {"E224"}),
     "two rotation moves": (lambda p: changed(p, 3, rotation_moves=2), {"E235"}),
     "a turn that is none": (
-        lambda p: changed(with_setting(p, "stabilise", method="wedge"), 3, rotation_moves=1),
+        lambda p: changed(setting(p, stabilise={"method": "wedge"}), 3, rotation_moves=1),
         {"E235"}),
 }  # fmt: skip
 
@@ -184,7 +168,7 @@ AMONG_EXACT = {
     "wedge hanging": (lambda p: reshaped(p, lambda w: w + foot(w, 0, 0.2)), {"E223"}),
     "wedge elsewhere": (lambda p: reshaped(p, lambda w: w - (12, 0)), {"E223", "E230", "E236"}),
     "contact tolerance": (
-        lambda p: with_setting(p, "settle", contact_px=GAP_PX / 2, clearance_px=GAP_PX / 8),
+        lambda p: setting(p, settle={"contact_px": GAP_PX / 2, "clearance_px": GAP_PX / 8}),
         {"E223", "E230"}),
     "raster": (lambda p: setting(p, geometry="raster"), {"E234"}),
     "unit of length": (lambda p: replace(p, px_per_m=2.0, length_unit="m"), {"E230"}),
@@ -192,23 +176,18 @@ AMONG_EXACT = {
 
 
 WAYS = {
-    (geometry, name, only): way
-    for geometry, only, ways in (
-        ("raster", True, ONLY_RASTER),
-        ("exact", True, ONLY_BOTH | ONLY_EXACT),
-        ("raster", False, AMONG_BOTH | AMONG_RASTER),
-        ("exact", False, AMONG_BOTH | AMONG_EXACT),
-    )
-    for name, way in ways.items()
+    ("raster", "only"): ONLY_RASTER,
+    ("exact", "only"): ONLY_BOTH | ONLY_EXACT,
+    ("raster", "among"): AMONG_BOTH | AMONG_RASTER,
+    ("exact", "among"): AMONG_BOTH | AMONG_EXACT,
 }
 
 
-@pytest.mark.parametrize(("geometry", "name", "only"), WAYS)
-def test_tampering_is_caught_by_its_code(geometry, name, only):
-    made, (change, expected) = MADE[geometry], WAYS[geometry, name, only]
+@pytest.mark.parametrize(("way", "name"), [(way, name) for way in WAYS for name in WAYS[way]])
+def test_tampering_is_caught_by_its_code(way, name):
+    made, (change, expected), only = MADE[way[0]], WAYS[way][name], way[1] == "only"
     labels = None if only else made.wall.labels
     report = check_plan(change(made.plan), made.stones, wall_labels=labels)
-    assert not report.ok
     assert codes(report) == expected if only else codes(report) >= expected
 
 
@@ -218,7 +197,7 @@ def test_stones_that_the_settings_do_not_allow_are_named():
         return [str(problem) for problem in check_plan(plan, TRUE.stones).problems]
 
     assert found(order="given", ban=[9]) == found(pin=[9]) == []  # it may be missing
-    assert found(ban=[SLAB]) == [f"E239 step 3: stone {SLAB} is banned."]
+    assert found(ban=[9, SLAB]) == [f"E239 step 3: stone {SLAB} is banned."]
     first, second, *others = TRUE.plan.steps
     said = "E239 step 1: stone 3 comes after stone 5 in an order that is given."
     problems = found((second, first, *others), order="given")
@@ -229,7 +208,7 @@ def test_what_is_claimed_and_cannot_be_is_said_in_words():
     plan = changed(TRUE.plan, WEDGE, alpha_right=None)
     plan = replace(plan, metrics=replace(plan.metrics, F_LR_half=0.5))
     metric, load = check_plan(plan, TRUE.stones).problems
-    assert load.message.startswith("alpha_right is null by the plan, 0.")
+    assert (load.code, load.message[:37]) == ("E231", "alpha_right is null by the plan, 0.58")
     said = "F_LR_half is 0.5 by the plan, but there is no such value."
     assert (metric.code, metric.message) == ("E234", said)
     # Metrics beyond the contract may be left out.

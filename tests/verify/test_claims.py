@@ -14,7 +14,6 @@ from tests.polygons import box
 from tests.verify.exact_examples import exact_example
 from tests.verify.examples import SLAB, WEDGE
 
-MU = 0.58
 PLAN = exact_example().plan
 IDS = [step.stone for step in PLAN.stone_steps]
 
@@ -28,7 +27,7 @@ def claiming(left, right, **without):
 def built(*fallen, first_fall=None):
     moves = [BlockMove(i, 9.0, 0.3, 0.0, 0.0, i in fallen) for i in IDS]
     moves.insert(3, BlockMove(WEDGE, 9.0, 0.3, 0.0, 0.0, WEDGE in fallen))
-    return BuildUp(tuple(moves), {}, (0.0,) * len(IDS), (), first_fall, MU)
+    return BuildUp(tuple(moves), {}, (0.0,) * len(IDS), (), first_fall, 0.58)
 
 
 def tilts(left, right, resolution=0.001, **trial):

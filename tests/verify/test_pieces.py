@@ -37,21 +37,15 @@ from tests.verify.tampering import codes, step_of
 
 STEP = WedgeStep(3, 9, 7, (), None, None)
 LIMITS = WedgeLimits(least_thickness=1.0, greatest_height=6.0, greatest_area=30.0)
-SLAB = np.array([[0, 8.01], [15, 8.01], [15, 10], [0, 10]])
-WIDTH = 20.0
-
-
-def model(wedge, *more):
-    """A pillar, a lower one, a slab on the first, and a wedge that may hold it."""
-    blocks = [(1, box(0, 0.01, 5, 8)), (2, box(10, 0.01, 15, 5)), (7, SLAB)]
-    return model_of_outlines([*blocks, (9, wedge), *more], 0.58, 0.1)
+SLAB = box(0, 8.01, 15, 10)
 
 
 def found(wedge, *more, **limits):
-    blocks = model(wedge, *more)
-    wall = no_polygons().added([box(0, 0.01, 5, 8), box(10, 0.01, 15, 5), SLAB, wedge])
-    limits = replace(LIMITS, **limits)
-    problems = [*check_settled_wedge(STEP, wedge, blocks, SLAB, wall, WIDTH, limits)]
+    """What is said of a wedge that may hold a slab between a pillar and a lower one."""
+    blocks = {1: box(0, 0.01, 5, 8), 2: box(10, 0.01, 15, 5), 7: SLAB, 9: wedge}
+    model = model_of_outlines([*blocks.items(), *more], 0.58, 0.1)
+    wall, limits = no_polygons().added([*blocks.values()]), replace(LIMITS, **limits)
+    problems = [*check_settled_wedge(STEP, wedge, model, SLAB, wall, 20.0, limits)]
     assert all(problem.step == 3 for problem in problems)
     return [f"{problem.code} {problem.message}" for problem in problems]
 
@@ -88,9 +82,6 @@ def test_wedge_is_one_that_a_mason_would_cut():
     assert line.endswith("(source px): nothing beside it at the end of the wall.")
 
 
-TOP = 40.0
-
-
 def placed(*blocks):
     return Outlines.empty(Site(60, 40)).added(list(enumerate(blocks, 1)), 1.0)
 
@@ -99,7 +90,7 @@ def placed(*blocks):
 @given(simple_polygons(), st.integers(0, 2**31))
 def test_sweep_is_everything_above_the_lowest_points(corners, seed):
     """The slow twin: a point is passed when the ray downwards from it meets the polygon."""
-    swept, polygon = swept_upwards(corners, TOP), shapely.Polygon(corners)
+    swept, polygon = swept_upwards(corners, 40.0), shapely.Polygon(corners)
     left, low, right, high = polygon.bounds
     rng = np.random.default_rng(seed)
     for x, y in rng.uniform([left - 1, low - 1], [right + 1, high + 3], (60, 2)).tolist():
@@ -135,18 +126,13 @@ def test_hook_over_what_is_there_can_be_lowered_and_under_it_cannot():
     assert not lies_under(clamp, placed(), 0.5)
 
 
-STONE_STEP = step_of(exact_example().plan, SLAB_ID)
-
-
 def problems(mask, outline, angle_deg=0.0):
     """What is said of an outline of some pixels, about their centroid, at some place."""
     at = np.array([31.5, 12.25])
-    step = replace(STONE_STEP, angle_deg=angle_deg)
+    step = replace(step_of(exact_example().plan, SLAB_ID), angle_deg=angle_deg)
     corners = settled_at(outline, angle_deg, *at.tolist()).corners
-    return [
-        p.message
-        for p in check_outline(step, Stone(SLAB_ID, mask), at, corners, OUTLINE_TOLERANCE_PX)
-    ]
+    found = check_outline(step, Stone(SLAB_ID, mask), at, corners, OUTLINE_TOLERANCE_PX)
+    return [problem.message for problem in found]
 
 
 @repeatable(60)
@@ -183,9 +169,8 @@ def test_an_outline_beside_its_pixels_or_of_another_shape_is_named():
 
 def test_check_does_not_take_the_word_of_whoever_reads_outlines(monkeypatch):
     for factor, named in ((1.0, False), (0.97, True), (1.03, True)):
-        monkeypatch.setattr(
-            stone_module, "stone_outline", lambda *of, k=factor: k * stone_outline(*of)
-        )
+        scaled = lambda *of, k=factor: k * stone_outline(*of)  # noqa: E731
+        monkeypatch.setattr(stone_module, "stone_outline", scaled)
         made = exact_example.__wrapped__()  # anew, not the one that is kept
         assert ("E240" in codes(check_plan(made.plan, made.stones))) is named
 

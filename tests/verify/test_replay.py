@@ -24,11 +24,6 @@ from tests.verify.examples import SLAB, WEDGE, example
 from tests.verify.tampering import changed, moved, reshaped
 
 
-def assert_near(found, expected):
-    """They are equal but for the rounding of lengths that were in metres."""
-    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-9)
-
-
 @pytest.mark.parametrize("make", [example, exact_example])
 @pytest.mark.parametrize(("scale", "px_per_m"), [(1.0, None), (1.0, 137.0), (0.5, 211.3)])
 def test_wall_is_rebuilt_to_the_pixel(make, scale, px_per_m):
@@ -42,9 +37,10 @@ def test_wall_is_rebuilt_to_the_pixel(make, scale, px_per_m):
     np.testing.assert_array_equal(mine.mask, its.mask)
     assert (mine.corners is None) == (make is example)
     if make is exact_example:
-        assert_near(mine.corners, its.corners)
+        # Lengths that were in metres are rounded.
+        assert np.abs(mine.corners - its.corners).max() < 1e-9
         for one, other in zip(found.placements, made.wall.placements, strict=True):
-            assert_near(one.settled.corners, other.settled.corners)
+            assert np.abs(one.settled.corners - other.settled.corners).max() < 1e-9
 
 
 @repeatable(80)
@@ -98,13 +94,10 @@ def test_wall_that_cannot_be_built_is_refused_with_the_step():
     made = exact_example()
     others = StoneSet(tuple(stone for stone in made.stones if stone.id != SLAB))
     unknown = replace(made.plan, settings={**made.plan.settings, "wings": 2})
-    for plan, stones_of_it, code, where in (
-        (made.plan, others, "E212", "step 3"),
-        (unknown, made.stones, "E217", "settings"),
-    ):
-        with pytest.raises(PlanError, match=code) as caught:
-            rebuild_wall(plan, stones_of_it)
-        assert caught.value.where == where
+    with pytest.raises(PlanError, match="E212 step 3: "):
+        rebuild_wall(made.plan, others)
+    with pytest.raises(PlanError, match="E217 settings: "):
+        rebuild_wall(unknown, made.stones)
 
 
 def test_the_outline_decides_whether_a_stone_is_in_the_wall():
@@ -160,9 +153,8 @@ def test_unknown_ones_are_left_out_and_wrong_groups_named():
 
 
 def test_those_that_need_each_other_are_kept_and_what_is_not_said_is_the_default():
-    policy = {"selection_rule": "towers", "search": {"budget": 1}, "mu": -1.0}
-    settings, _ = found(policy)
-    assert (settings.selection_rule, settings.search.budget) == ("towers", 1)
+    policy = {"selection_rule": "towers", "search": {"budget": 1}}
+    assert found(policy | {"mu": -1.0})[0] == METHODS["best"].updated(policy)
     plan = replace(example().plan, method="best", settings={"search": {"budget": 1}, "mu": -1.0})
     settings, _ = plan_settings(plan)
     assert settings == PlannerSettings().updated({"search": {"budget": 1}})

@@ -12,6 +12,7 @@ from PIL import Image, ImageDraw
 
 from drystone.contacts.given import model_from_json
 from drystone.drawing.assembly import Assembly, Part
+from drystone.indices import INDEX_NAMES
 from drystone.model.plan import Plan, PlanMetrics, StoneStep, WedgeStep
 from drystone.statics.limit import lateral_resistance
 
@@ -19,7 +20,6 @@ WIDTH_PX, HEIGHT_PX = 60.0, 30.0
 CELL_PX = 80
 ANGLES_DEG = (0.0, 97.0, -45.0, 180.0, 12.5, -90.0, 1.0, 178.5)
 WEDGE_PX = np.array([(30.0, 0.0), (60.0, 0.0), (60.0, 6.0)])
-INDICES = ("SF", "LFR", "GDS", "NHR", "IWR", "IS", "LLC")
 
 
 def assembly(columns=3, rows=2, px_per_m=200.0):
@@ -35,7 +35,7 @@ def assembly(columns=3, rows=2, px_per_m=200.0):
         source = (column + 0.5) * CELL_PX, (across - row - 0.5) * CELL_PX
         step = StoneStep(
             len(parts) + 1, 11 + 3 * place, ANGLES_DEG[place % len(ANGLES_DEG)], source,
-            centroid_of(corners), "left", 1 + place % 3, 0, dict.fromkeys(INDICES, 0.5),
+            centroid_of(corners), "left", 1 + place % 3, 0, dict.fromkeys(INDEX_NAMES, 0.5),
             None, None, None,
         )  # fmt: skip
         parts.append(Part(step, corners, step.centroid))

@@ -13,8 +13,6 @@ from drystone.drawing.palette import PLAIN_COLOUR, WEDGE_COLOUR, rgb
 from drystone.errors import UsageError
 from tests.drawing.export.drawn_walls import assembly, runs
 
-SETTINGS = ExportSettings(seconds_per_step=0.3)
-
 
 def frames(path):
     with Image.open(path) as film:
@@ -35,7 +33,7 @@ def spot(part, film):
 
 def test_every_part_is_white_then_bright_and_then_stays_for_steps_that_a_gif_can_have(tmp_path):
     wall = assembly()
-    (path,) = FORMATS["gif"].write(wall, tmp_path, SETTINGS)
+    (path,) = FORMATS["gif"].write(wall, tmp_path, ExportSettings(seconds_per_step=0.3))
     assert path.stat().st_size < 200_000
     film, read = Film(wall), frames(path)
     # A frame a step, and one of the wall that stays.

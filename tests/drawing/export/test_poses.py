@@ -15,11 +15,9 @@ from drystone.model.plan import StoneStep
 from tests.drawing.plans import METRIC, PX_PER_M, THICKNESS_M, assembly
 from tests.polygons import box_of
 
-SETTINGS = ExportSettings()
-
 
 def written(name, folder):
-    (path,) = FORMATS["poses"].write(assembly(name), folder, SETTINGS)
+    (path,) = FORMATS["poses"].write(assembly(name), folder, ExportSettings())
     assert b"-0.0," not in path.read_bytes()
     return json.loads(path.read_text(encoding="utf-8"))
 
@@ -65,8 +63,8 @@ def test_pick_and_place_follow_the_formula_of_the_plan(name, tmp_path):
         assert np.array(part["pick_to_place"]) @ photo == pytest.approx(moved, abs=1e-12)
 
 
-def test_grasps_masses_sizes_and_the_order_of_work(tmp_path):
-    read, wall = written("exact", tmp_path), assembly("exact")
+def test_grasps_ways_masses_sizes_and_the_order_of_work(tmp_path):
+    read, wall, top = written("exact", tmp_path), assembly("exact"), 0.0
     assert (read["density_kg_m3"], read["clearance_m"]) == (2450.0, 0.05)
     assert read["thickness_m"] == THICKNESS_M
     for found, part in zip(read["parts"], wall.parts, strict=True):
@@ -85,7 +83,15 @@ def test_grasps_masses_sizes_and_the_order_of_work(tmp_path):
             assert held["direction_photo"] is None
         assert found["size_m"]["y"] == held["thickness_m"] == THICKNESS_M
         assert held["width_m"] <= min(found["size_m"]["x"], found["size_m"]["z"]) + 1e-12
-        assert found["place"]["approach"]["blocked_m"] * PX_PER_M < 1.0
+        way, low = found["place"]["approach"], part.corners[:, 1].min()
+        assert way["blocked_m"] * PX_PER_M < 1.0
+        if part.kind == "stone":  # begins above everything that stands
+            assert xyz(way["direction"]) == [0.0, 0.0, -1.0]
+            assert low + way["stand_off_m"] == pytest.approx(max(top, low) + 0.05)
+        else:
+            assert xyz(way["direction"]) == [0.0, 1.0, 0.0]
+            assert way["start"]["y"] + THICKNESS_M / 2 == pytest.approx(-0.05)
+        top = max(top, part.corners[:, 1].max())
     # The order of work can be followed.
     there, names = {0}, [part["name"] for part in read["parts"]]
     for part in read["parts"]:
@@ -98,21 +104,6 @@ def test_grasps_masses_sizes_and_the_order_of_work(tmp_path):
         waits = bool(part["wedges_after"])
         assert (part["alpha"]["left"] is None) == (part["alpha"]["right"] is None) == waits
     assert [name for part in read["parts"] for name in part["wedges_after"]] == ["wedge_010"]
-
-
-def test_stones_begin_above_everything_that_stands():
-    wall = assembly("exact")
-    top = 0.0
-    for part in wall.parts:
-        way = robots.place_approach(wall, part)
-        if part.kind == "stone":
-            assert tuple(way["direction"].values()) == (0.0, 0.0, -1.0)
-            lowest = part.corners[:, 1].min() + way["stand_off_m"]
-            assert lowest == pytest.approx(max(top, part.corners[:, 1].min()) + 0.05)
-        else:
-            assert tuple(way["direction"].values()) == (0.0, 1.0, 0.0)
-            assert way["start"]["y"] + THICKNESS_M / 2 == pytest.approx(-0.05)
-        top = max(top, part.corners[:, 1].max())
 
 
 @pytest.mark.parametrize("name", METRIC)

@@ -21,7 +21,6 @@ from drystone.io.plan_json import plan_digest
 from drystone.statics.model import GROUND, Interface, RigidBlockModel
 from tests.drawing.export.drawn_walls import assembly, photo_colour, photograph, runs
 
-STONE = (0xCF, 0xC8, 0xBB)
 DPI = 150
 PX_PER_MM = DPI / 25.4
 
@@ -48,7 +47,7 @@ def test_a_sheet_is_to_scale_says_what_to_do_and_shows_the_photograph(tmp_path):
     assert np.array(sizes) == pytest.approx(np.array([(297, 210), *[(210, 297)] * 3]), abs=0.1)
     # The fill of the stones, which reach the frame, is as wide as the wall.
     first_page = rendered(path, 0)
-    rows, columns = np.nonzero(np.abs(first_page - np.array(STONE)).max(axis=2) <= 3)
+    rows, columns = np.nonzero(np.abs(first_page - np.array([0xCF, 0xC8, 0xBB])).max(axis=2) <= 3)
     assert (np.ptp(columns) + 1) / PX_PER_MM == pytest.approx(wall.size[0] * 1000 / 10, abs=0.5)
     assert (np.ptp(rows) + 1) / PX_PER_MM == pytest.approx(wall.size[1] * 1000 / 10, abs=0.5)
     dark = (first_page.max(axis=2) < 140)[:, : first_page.shape[1] // 2]

@@ -9,6 +9,7 @@ from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
 from drystone.drawing import plot_choice, plot_joint_paths, plot_labels, plot_stones, plot_wall
+from drystone.drawing.outlines import label_regions
 from drystone.drawing.palette import PLAIN_COLOUR, WEDGE_COLOUR, cluster_colour, text_colour
 from drystone.drawing.pictures.wall import COLUMNS
 from drystone.model.site import Site
@@ -16,7 +17,7 @@ from drystone.model.stone import Source, StoneSet
 from drystone.model.wall import Wall
 from tests.drawing import examples
 from tests.verify.exact_examples import exact_example
-from tests.verify.examples import stone_set
+from tests.verify.examples import example, stone_set
 
 CLUSTERS = examples.CLUSTERS | {examples.UNUSED: 3}
 
@@ -27,15 +28,6 @@ def patches(ax):
 
 def numbers(ax):
     return {text.get_text(): text for text in ax.texts}
-
-
-def assert_numbered(ax, plan):
-    """The steps of a plan stand at the centroids of its stones, and nothing else is written."""
-    written = {number: text.get_position() for number, text in numbers(ax).items()}
-    steps = {str(step.step): step.centroid for step in plan.stone_steps}
-    assert set(written) == set(steps)
-    for number, place in written.items():
-        assert place == pytest.approx(steps[number])
 
 
 def test_stones_lie_as_in_the_image_with_their_id_in_a_readable_colour():
@@ -102,40 +94,33 @@ def test_every_stone_wedge_frame_and_ground_is_drawn_once():
     assert not empty.texts
 
 
-@pytest.mark.parametrize("px_per_m", [None, 50.0])
-def test_stones_stand_at_their_place_with_the_steps_of_the_plan_as_numbers(px_per_m):
-    wall = examples.wall(px_per_m)
-    ax = plot_wall(wall, examples.CLUSTERS)
-    assert_numbered(ax, examples.plan(px_per_m))
-    assert ax.get_xlabel() == ("px" if px_per_m is None else "m")
-    drawn, units = patches(ax), wall.site.units_per_px
-    l_shape = np.array([[64, 0], [72, 0], [72, 12], [68, 12], [68, 6], [64, 6], [64, 0]]) * units
-    np.testing.assert_allclose(drawn["stone-12"].get_path().vertices, l_shape)
-    frame = drawn["frame"].get_path().get_extents()
-    assert frame.get_points().ravel() == pytest.approx([0, 0, 84 * units, 30 * units])
+WALLS = (example(1.0), example(1.0, 50.0), exact_example(1.0), exact_example(0.5, 50.0))
 
 
-@pytest.mark.parametrize(("scale", "px_per_m"), [(1.0, None), (0.5, 50.0)])
-def test_a_wall_of_outlines_is_drawn_by_its_outlines(scale, px_per_m):
-    made = exact_example(scale, px_per_m)
-    units = 1.0 / (px_per_m or 1.0)
-    ax = plot_wall(made.wall)
-    assert_numbered(ax, made.plan)
+@pytest.mark.parametrize("made", WALLS, ids=["pixels", "pixels, m", "outlines", "outlines, m"])
+def test_stones_and_wedges_stand_at_their_place_with_the_steps_of_the_plan_as_numbers(made):
+    ax, px_per_m = plot_wall(made.wall), made.plan.px_per_m
+    written = {number: text.get_position() for number, text in numbers(ax).items()}
+    steps = {str(step.step): pytest.approx(step.centroid) for step in made.plan.stone_steps}
+    assert written == steps
     drawn, wedges = patches(ax), {step.id for step in made.plan.wedge_steps}
-    for block, corners in made.wall.outlines.blocks:
+    if made.wall.outlines is None:
+        blocks = [(one.id, one.loops[0]) for one in label_regions(made.wall.labels)]
+    else:
+        blocks = made.wall.outlines.blocks
+    for block, corners_px in blocks:
         path = drawn[f"{'wedge' if block in wedges else 'stone'}-{block}"].get_path()
-        np.testing.assert_allclose(path.vertices[:-1], corners * units)
-    frame = drawn["frame"].get_path().get_extents()
-    assert (frame.x1, frame.y1) == pytest.approx((84 * units, 30 * units))
-
-
-FIGURES = {"F_SF": 0.8, "F_AV": 20.0, "F_AH": 2.0, "F_LR": 0.5}
+        np.testing.assert_allclose(path.vertices[:-1] * (px_per_m or 1.0), corners_px)
+    assert ax.get_xlabel() == ("px" if px_per_m is None else "m")
+    frame = drawn["frame"].get_path().get_extents().get_points().ravel()
+    assert frame * (px_per_m or 1.0) == pytest.approx([0, 0, 84, 30])
 
 
 @pytest.mark.parametrize("count", [1, COLUMNS, COLUMNS + 1])
 def test_every_wall_has_its_picture_and_its_points(count):
     wall = examples.wall()
-    values = [{**FIGURES, "F_SF": 0.8 + 0.01 * k} for k in range(count)]
+    usual = {"F_AV": 20.0, "F_AH": 2.0, "F_LR": 0.5}
+    values = [{"F_SF": 0.8 + 0.01 * k, **usual} for k in range(count)]
     figure = plot_choice([wall] * count, [*values[:-1], {**values[-1], "F_AV": None}])
     *walls, one, two = figure.axes
     blocks = len(wall.placements) + len(wall.wedges)

@@ -1,5 +1,3 @@
-"""`drystone bench`."""
-
 import json
 
 import pytest
@@ -10,9 +8,7 @@ from drystone_lab.table import Table
 from tests.lab.runs.bricks import picture
 
 
-def test_a_suite_is_printed_has_a_folder_for_pictures_and_fails_for_a_miss(
-    tmp_path, run, monkeypatch
-):
+def test_a_suite_is_printed_makes_its_folder_and_fails_for_a_miss(tmp_path, run, monkeypatch):
     monkeypatch.setattr(shear, "predict", lambda *_: shear.ShearForces(20.0, 10.0))
     ran = run("bench", "shear", "--quick", "-o", tmp_path / "new")
     assert ran.code == 0
@@ -87,9 +83,6 @@ def test_options_that_make_no_sense(options, named, run):
     run("bench", *options).refused("E138", named)
 
 
-BRICKS = ("bench", "--suite", "bricks", "--quick", "--seeds", "1", "--policy", "paper", "random")
-
-
 def test_suites_and_policies_are_named_once(run):
     lines = run("bench", "--list").out.splitlines()
     names = [name for line in lines for name in line.split(":")[0].split(", ")]
@@ -99,34 +92,27 @@ def test_suites_and_policies_are_named_once(run):
     assert len(set(names)) == len(names)
 
 
-def test_settings_hold_for_all(run, tmp_path):
-    settings = tmp_path / "full.toml"
+def test_both_spellings_are_the_same_settings_hold_for_all_and_a_store_has_a_history(run, tmp_path):
+    store, settings = tmp_path / "store", tmp_path / "full.toml"
     settings.write_text('sampling = "full"\n', encoding="utf-8")
-    ran = run(*BRICKS, "--settings", settings, "--store", tmp_path / "store")
-    assert ran.code == 0
-    plans = [json.loads(path.read_text()) for path in (tmp_path / "store" / "runs").iterdir()]
-    assert {plan["plan"]["settings"]["sampling"] for plan in plans} == {"full"}
-    settings.write_text("ban = [1]\n", encoding="utf-8")
-    assert "E138" in run(*BRICKS, "--settings", settings).err
-
-
-def test_both_spellings_are_the_same_and_a_store_has_a_history(run, tmp_path):
-    store = tmp_path / "store"
     assert "E138" in run("bench", "--history").err
     assert "no runs" in run("bench", "--history", "--store", store).err
-    ran = run(*BRICKS, "--store", store, "--json")
-    assert (ran.code, "2 of 2 walls" in ran.err) == (0, True)
-    positional = run("bench", "bricks", *BRICKS[3:], "--store", store, "--json")
-    tables = ran.json()
-    assert tables == positional.json()
-    assert any(title.startswith("Ranking") for title in tables)
-    walls = tables["Walls: mean over seeds, standard deviation (±), best"]
-    assert walls[0]["placed share"] == 1.0
-    assert {path.name for path in store.iterdir()} >= {"runs.csv", "runs"}
+    options = (
+        "--quick", "--seeds", "1", "--policy", "paper", "random", "--settings", settings,
+        "--store", store, "--json",
+    )  # fmt: skip
+    named = run("bench", "--suite", "bricks", *options)
+    positional = run("bench", "bricks", *options)
+    assert (named.code, "2 of 2 walls" in named.err) == (0, True)
+    assert named.json() == positional.json()
+    assert any(title.startswith("Ranking") for title in named.json())
+    plans = [json.loads(path.read_text())["plan"] for path in (store / "runs").iterdir()]
+    assert [plan["settings"]["sampling"] for plan in plans] == ["full", "full"]
     ran = run("bench", "--history", "--store", store, "--json", "-o", tmp_path / "pictures")
     (rows,) = ran.json().values()
     found = [(row["suite"], row["method"], row["runs"]) for row in rows]
-    assert found == [("bricks/1", "paper", 1), ("bricks/1", "random", 1)]
+    full = ' {"sampling": "full"}'
+    assert found == [("bricks/1", f"paper{full}", 1), ("bricks/1", f"random{full}", 1)]
     drawn = tmp_path / "pictures" / "history-bricks-1.png"
     assert drawn.read_bytes().startswith(b"\x89PNG")
     assert "no runs of 'masons'" in run("bench", "masons", "--history", "--store", store).err

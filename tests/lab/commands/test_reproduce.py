@@ -1,5 +1,3 @@
-"""`drystone reproduce`."""
-
 import pytest
 
 from drystone.cli.parser import build_parser

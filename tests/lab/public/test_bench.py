@@ -1,9 +1,8 @@
-"""Runs of the public benchmark on bricks, and its yardstick: strips packed without gravity."""
-
 import sys
 from dataclasses import replace
 from importlib.metadata import version
 from itertools import product
+from unittest.mock import Mock
 
 import pytest
 
@@ -38,19 +37,14 @@ def counted(monkeypatch):
     return done
 
 
-def figures(tables):
-    return [table.records() for table in tables if not table.title.startswith("Seconds")]
-
-
-def test_every_method_builds_with_every_seed_and_runs_of_a_store_are_not_done_again(
-    tmp_path, counted
-):
+def test_every_method_builds_with_every_seed_and_kept_runs_are_not_done_again(tmp_path, counted):
     settings = replace(SETTINGS, store=tmp_path, seeds=1, seed=3)
-    before = figures(run_public(settings))
+    walls, everything, _, *others = run_public(settings)
+    before = [walls, everything, *others]
     for changed, count in (({}, 2), ({"seeds": None}, 4), ({"again": True}, 6)):
-        walls, everything, seconds, *_ = tables = run_public(replace(settings, **changed))
+        walls, everything, seconds, *others = run_public(replace(settings, **changed))
         assert len(counted) == count
-        assert (figures(tables) == before) == ("seeds" not in changed)
+        assert ([walls, everything, *others] == before) == ("seeds" not in changed)
         told = [(row["wall"], row["method"], row["seeds"]) for row in walls.records()]
         each = 2 if "seeds" in changed else 1
         assert told == [("bricks 2:1", "paper", each), ("bricks 2:1", "random", each)]
@@ -103,45 +97,34 @@ def test_shaken_walls_are_shaken_once(tmp_path, monkeypatch):
 def test_a_wall_of_bricks_on_the_table(monkeypatch):
     """What is shaken is the finished wall, in the paper's friction."""
     pytest.importorskip("pymunk", reason="pymunk is not installed (extra `physics`)")
-    seen = []
-
-    def shake(scene, _engine, *, watched):
-        seen.append((scene, watched))
-        return 0.3
-
+    shake = Mock(return_value=0.3)
     monkeypatch.setattr(bench, "shake_once", shake)
     spec = bricks.run(0)
     assert bench.pga_of(spec, execute(spec, None), None) == 0.3
-    ((scene, watched),) = seen
+    (scene, _), options = shake.call_args
     assert scene.mu == 0.58
-    assert watched == frozenset(range(1, 7)) == frozenset(scene.shapes)
+    assert options == {"watched": frozenset(range(1, 7))}
+    assert set(scene.shapes) == set(range(1, 7))
     assert all(shape.area == pytest.approx(200) for shape in scene.shapes.values())
 
 
-WALL = walls_of("bricks")[0]
-
-
 def packing_into(monkeypatch, width):
-    """Pack everything into a strip of a width; return what is asked."""
-    asked = []
-
-    def packed(_packer, stones, height, turns, seconds, seed):
-        asked.append((len(stones), height, turns, seconds, seed))
-        return width
-
+    """Pack everything into a strip of a width; return what is asked for it."""
+    packed = Mock(return_value=width)
     monkeypatch.setattr(packing, "load_packer", lambda: None)
     monkeypatch.setattr(bench, "load_packer", lambda: None)
     monkeypatch.setattr(packing, "packed_width_px", packed)
-    return asked
+    return packed
 
 
 @pytest.mark.parametrize(("strip", "over"), [(300.0, 300.0), (60.0, 120.0)])
 def test_it_fills_a_strip_as_high_as_the_wall(monkeypatch, strip, over):
-    asked = packing_into(monkeypatch, strip)
+    packed, wall = packing_into(monkeypatch, strip), walls_of("bricks")[0]
     method, changes = method_named("spyrrow")
-    outcome = execute(WALL.run(3, *changes, method=method), None)
-    stones = WALL.source.stones(None)
-    assert asked == [(len(stones), 84, (0.0, 90.0, 180.0, 270.0), 3, 3)]
+    outcome = execute(wall.run(3, *changes, method=method), None)
+    stones = wall.source.stones(None)
+    _, given, *asked = packed.call_args.args
+    assert (len(given), asked) == (len(stones), [84, (0.0, 90.0, 180.0, 270.0), 3, 3])
     # A strip that is shorter than the wall leaves the rest of the wall empty.
     area = sum(int(stone.mask.sum()) for stone in stones)
     assert outcome.figures["F_SF"] == pytest.approx(area / (over * 84))

@@ -1,5 +1,3 @@
-"""Results: kept by version in a table, and methods beside each other."""
-
 import csv
 import math
 from dataclasses import astuple, replace
@@ -91,28 +89,20 @@ def test_a_history_has_medians_by_version_oldest_first():
     assert axes[1].get_xticklabels()[0].get_text() == "0.9.0"
 
 
-WALLS = ("bricks 2:1", "bricks 3:1")
-
-
-def result(wall, method, seed, **figures):
-    values = dict.fromkeys(("F_SF", "F_AV", "F_AH", "F_LR"), 0.5)
-    return replace(RUN, wall=wall, method=method, seed=seed, seconds=1.0, **(values | figures))
-
-
 def f_sf_table(found):
     """The one pair of F_SF by row, or all, and the notes below."""
     return next(table for table in tables.pair_tables(found) if table.title.startswith("F_SF"))
 
 
-def results(values):
-    """Results of F_SF by method: seed after seed on the first wall, then on the second."""
-    return BenchResults(
-        tuple(
-            result(WALLS[place >= len(column) // 2], method, place % (len(column) // 2), F_SF=value)
-            for method, column in values.items()
-            for place, value in enumerate(column)
-        )
-    )
+def results(values, *figures, shaken="no"):
+    """Results by method: F_SF, or other figures that are equal; half of them are of each wall."""
+    runs, walls = [], ("bricks 2:1", "bricks 3:1")
+    for method, column in values.items():
+        for place, value in enumerate(column):
+            second, seed = divmod(place, len(column) // 2)
+            known = {"F_LR": 0.5, "shaken": shaken, **dict.fromkeys(figures or ("F_SF",), value)}
+            runs.append(replace(RUN, wall=walls[second], method=method, seed=seed, **known))
+    return BenchResults(tuple(runs))
 
 
 def test_the_interval_is_that_of_a_mean():
@@ -205,13 +195,8 @@ def test_copies_are_no_evidence():
     assert {(row["first"], row["second"]): row["pairs"] for row in rows} == {
         ("a", "b"): 2, ("a", "c"): 4, ("b", "c"): 4,
     }  # fmt: skip
-    found = tuple(
-        result(WALLS[0], method, seed, F_SF=0.5, F_AV=value + seed)
-        for method, value in (("a", 7.0), ("b", 8.0))
-        for seed in range(3)
-    )
-    table = f_sf_table(BenchResults(found))
-    assert table.records()[0]["pairs"] == 3
+    table = f_sf_table(results({"a": [7.0, 8.0] * 2, "b": [8.0, 9.0] * 2}, "F_AV"))
+    assert table.records()[0]["pairs"] == 4
     assert not any("depend on the seed" in note for note in table.notes)
 
 
@@ -228,39 +213,31 @@ def test_equal_values_share_a_rank_and_undefined_ones_are_last(values, ranks):
     assert {row["method"]: row["F_SF"] for row in ranking} == ranks
 
 
-def made(**columns):
-    return BenchResults(
-        tuple(
-            result(wall, "one", seed, **{name: values[k][seed] for name, values in columns.items()})
-            for k, wall in enumerate(WALLS)
-            for seed in range(3)
-        )
-    )
-
-
 def test_mean_spread_and_best():
-    values = [0.7, 0.8, 0.9], [0.5, 0.5, 0.53]
-    walls, everything, times = tables.comparison(made(F_SF=values, F_AH=values))
+    found = results({"one": [0.7, 0.8, 0.9, 0.5, 0.5, 0.53]}, "F_SF", "F_AH")
+    walls, everything, times = tables.comparison(found)
     first, second = walls.records()
     assert (first["F_SF"], first["±F_SF"]) == (pytest.approx(0.8), pytest.approx(0.1))
     assert (first["best F_SF"], first["best F_AH"]) == (0.9, 0.7)
-    assert second["±F_SF"] == pytest.approx(stdev(values[1]), rel=1e-3)
+    spread = stdev([0.5, 0.5, 0.53])
+    assert second["±F_SF"] == pytest.approx(spread, rel=1e-3)
     (row,) = everything.records()
     assert row["F_SF"] == pytest.approx(fmean([0.8, 0.51]))
-    assert row["±F_SF"] == pytest.approx(math.hypot(0.1, stdev(values[1])) / 2**0.5, rel=1e-3)
+    assert row["±F_SF"] == pytest.approx(math.hypot(0.1, spread) / 2**0.5, rel=1e-3)
     assert row["best F_SF"] == pytest.approx(fmean([0.9, 0.53]))
-    assert [row["s"] for row in times.records()] == [1.0, 1.0]
+    assert [row["s"] for row in times.records()] == [0.5, 0.5]
 
 
 def test_what_is_not_defined_is_counted_and_never_zero():
-    walls, everything, _ = tables.comparison(made(F_LR=([None, 0.4, 0.6], [None] * 3)))
+    found = results({"one": [None, 0.4, 0.6, None, None, None]}, "F_LR")
+    walls, everything, _ = tables.comparison(found)
     first, second = walls.records()
     assert first["F_LR"] == everything.records()[0]["F_LR"] == pytest.approx(0.5)
     assert second["F_LR"] is second["best F_LR"] is second["±F_LR"] is None
     assert any("F_LR is not defined for walls of one 4 of 6" in note for note in walls.notes)
     # Amplitudes are there when walls were shaken.
     assert "PGA, g" not in walls.columns
-    shaken = made(pga_g=([0.2, None, 0.3], [0.1] * 3), shaken=[["yes"] * 3] * 2)
+    shaken = results({"one": [0.2, None, 0.3, 0.1, 0.1, 0.1]}, "pga_g", shaken="yes")
     walls, *_ = tables.comparison(shaken)
     assert walls.records()[0]["PGA, g"] == pytest.approx(0.25)
     # Of the yardstick nothing was built, and so it is of walls in which no stone found a place.

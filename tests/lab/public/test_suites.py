@@ -1,5 +1,3 @@
-"""The walls of the public benchmark stay as they are."""
-
 import hashlib
 
 import pytest
@@ -38,12 +36,9 @@ def test_all_walls_and_some_alone():
     assert all(wall.suite in suites.PUBLIC_SUITES for wall in walls_of("all"))
 
 
-WALL = walls_of("bricks")[0]
-
-
 def settings_of(name, changes=()):
     method, merged = method_named(name, changes)
-    return WALL.run(3, *merged, method=method).settings()
+    return walls_of("bricks")[0].run(3, *merged, method=method).settings()
 
 
 def test_only_the_choice_differs_and_settings_are_replaced_for_all_alike():

@@ -1,6 +1,7 @@
 """Fig. 5, clusters of like stones, and Fig. 12, stones as rigid blocks: on small walls."""
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -23,24 +24,11 @@ def outputs(here):
     return {name: item.make(here) for name, item in made.items()}
 
 
-@pytest.fixture(scope="module")
-def stones():
-    return RUBBLE.source.stones(None)
-
-
-@pytest.fixture(scope="module")
-def features(stones):
-    return stone_features(stones, PoseBook())
-
-
-def clusters_of(features, threshold):
-    """The cluster of each stone as SciPy numbers them."""
-    return fcluster(linkage(features, "ward"), threshold, criterion="distance")
-
-
-def test_clusters_are_those_of_ward_at_every_threshold(outputs, stones, features):
-    ids = [stone.id for stone in stones]
-    of_each = clusters_of(features, 0.2)
+def test_clusters_are_those_of_ward_at_every_threshold(outputs):
+    stones = RUBBLE.source.stones(None)
+    ids, features = [stone.id for stone in stones], stone_features(stones, PoseBook())
+    tree = linkage(features, "ward")
+    of_each = fcluster(tree, 0.2, "distance")
     expected = {frozenset(np.array(ids)[of_each == one].tolist()) for one in of_each}
     table = rows(outputs["fig5"], "clusters")
     assert {frozenset(map(int, row["ids"].split())) for row in table} == expected
@@ -51,14 +39,15 @@ def test_clusters_are_those_of_ward_at_every_threshold(outputs, stones, features
         assert (row["mean eccentricity"], row["mean size"]) == pytest.approx(mean, rel=2e-3)
     (row,) = rows(outputs["fig5"], "thresholds")
     for distance in fig5.DISTANCES:
-        assert row[f"{distance:g}"] == clusters_of(features, distance).max(), distance
+        assert row[f"{distance:g}"] == fcluster(tree, distance, "distance").max(), distance
     drawn = gids(outputs["fig5"], "fig5")
     assert all(drawn.count(f"stone-{stone.id}") == 2 for stone in stones)
     # The span of thresholds has the paper's count.
     grouped = fig5.ClusteredStones.of("rubble", stones)
     low, high = grouped.between(7)
-    counts = [clusters_of(features, at).max() for at in (low - 2e-3, (low + high) / 2, high + 2e-3)]
-    assert counts[0] > counts[1] == 7 > counts[2]
+    ats = (low - 2e-3, (low + high) / 2, high + 2e-3)
+    fewer = [fcluster(tree, at, "distance").max() for at in ats]
+    assert fewer[0] > fewer[1] == 7 > fewer[2]
 
 
 def test_the_stones_pr_fall_into_the_paper_s_clusters(tmp_path, data_dir):
@@ -85,12 +74,9 @@ def labels(folder):
     return method.three_stones(built(folder, RUBBLE)[-1].stage.after)
 
 
-def test_edges_are_where_pixels_of_two_blocks_meet_and_interfaces_end_on_their_corners(
-    labels, outputs
-):
-    found = [
-        tuple(map(tuple, edge)) for edge in np.stack(method.boundary_edges(labels), 1).tolist()
-    ]
+def test_edges_are_where_pixels_of_blocks_meet_and_interfaces_end_on_corners(labels, outputs):
+    edges = np.stack(method.boundary_edges(labels), 1).tolist()
+    found = [tuple(map(tuple, edge)) for edge in edges]
     assert len(found) == len(set(found)) > 10
     expected = set().union(*directed_edges(labels).values())
     assert set(found) == expected
@@ -127,19 +113,10 @@ def test_three_stones_stand_on_the_ground_and_on_each_other(folder, labels):
     assert set(np.unique(method.three_stones(run[2].stage.after)).tolist()) == first | {0}
 
 
-def test_the_mean_of_the_normals_of_pixels_is_across_the_ends():
-    steps = [0, 0, 1, 2, 2, 3, 4, 4, 5, 6, 6, 7]
-    labels = np.ones((12, 12), np.uint32)
-    for col, height in enumerate(steps):
-        labels[: 11 - height, col] = 2
-    starts, ends = method.boundary_edges(labels)
-    way = (ends - starts)[(starts[:, 1] > 0) | (ends[:, 1] > 0)]
-    mean = np.array([-way[:, 1], way[:, 0]]).mean(axis=1)
-    mean /= np.hypot(*mean)
-    (run,) = [i for i in model_from_labels(labels).model.interfaces if i.other == 1]
-    apart_deg = math.degrees(math.acos(abs(mean @ run.normal)))
-    assert method._apart_deg(run) == pytest.approx(apart_deg, abs=1e-5)
-    assert 0.1 < apart_deg < 10
+def test_a_normal_is_apart_from_the_mean_of_those_of_pixels_which_is_across_the_ends():
+    points, normal = np.array([[1.0, 2.0], [6.0, 2.0], [9.0, 8.0]]), np.array([-0.8, 0.6])
+    apart_deg = method._apart_deg(SimpleNamespace(points=points, normal=normal))
+    assert apart_deg == pytest.approx(math.degrees(math.acos(0.8 * 0.6 + 0.6 * 0.8)))
 
 
 def test_normals_are_to_the_left_of_the_way():

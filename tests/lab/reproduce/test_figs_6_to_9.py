@@ -46,10 +46,6 @@ def outputs(here):
     return {name: of(name, wall).make(here) for name, wall in asked.items()}
 
 
-EVERY = 4
-"""Columns that are looked at slowly: each of so many."""
-
-
 @pytest.fixture(scope="module")
 def amid(folder):
     return amid_course(built(folder, RUBBLE))
@@ -60,23 +56,20 @@ def places(amid):
     return fig6_8.resting_places(amid.moment)
 
 
-def test_places_are_all_at_which_a_stone_rests(amid, places):
+def test_places_are_all_at_which_a_stone_rests_and_have_extremes(amid, places, outputs):
     moment = amid.moment
     posed = moment.workshop.poses(moment.remaining[0])[0]
     occupied, mask = moment.wall.occupied, posed.mask
     expected = {
         (row, col)
         for row, col in all_positions(occupied, mask)
-        if col % EVERY == 0
+        if col % 4 == 0  # each fourth, as this is slow
         and not overlaps(occupied, mask, row, col)
         and rests_stably(occupied, mask, row, col, col + posed.anchor[0], 0.0)
     }
     found = {(p.row, p.col) for p in places if p.posed is posed}
-    assert {place for place in found if place[1] % EVERY == 0} == expected != set()
+    assert {place for place in found if place[1] % 4 == 0} == expected != set()
     assert {p.posed.stone.id for p in places} <= set(moment.remaining)
-
-
-def test_extremes_are_the_least_and_the_largest(outputs, places):
     for row in rows(outputs["fig6-7"], "extremes"):
         name = row["index"]
         values = [place.values[name] for place in places if name in place.values]
@@ -94,10 +87,8 @@ def test_counting_again_agrees_everywhere(places):
                 seen.add(name)
     assert seen == {"LFR", "GDS", "NHR", "IWR", "IS"}
     # On the ground there are no joints below, however low a stone beside is.
-    assert (
-        "IWR"
-        not in resting(9, 20, slab(6, 4), (3, 8), (7, 2, slab(2, 6)), (7, 12, slab(2, 6))).values
-    )
+    low = slab(2, 6)
+    assert "IWR" not in resting(9, 20, slab(6, 4), (3, 8), (7, 2, low), (7, 12, low)).values
 
 
 def test_the_stone_of_fig7_stands_where_the_run_left_it(folder, outputs, amid):
@@ -110,9 +101,7 @@ def test_the_stone_of_fig7_stands_where_the_run_left_it(folder, outputs, amid):
     # Pictures show what is measured.
     six, seven = (gids(outputs["fig6-7"], name) for name in ("fig6", "fig7"))
     assert [six.count(mark) for mark in ("stone", "begun", "rays", "box")] == [12, 2, 2, 2]
-    assert {*seven} >= {
-        "stone", "rays", "begun", "box", "top", "joint", "offset", "slope", "name"
-    }  # fmt: skip
+    assert {*seven} >= {"stone", "rays", "begun", "box", "top", "joint", "offset", "slope", "name"}
 
 
 def test_only_what_is_asked_for_is_marked():
@@ -150,45 +139,31 @@ def test_only_what_is_asked_for_is_marked():
     assert patches["begun"].get_bbox().bounds == (0, 0, 20, 8)
 
 
-@pytest.fixture(scope="module")
-def trial(amid):
-    return amid.moment, amid.moment.trial(amid.posed.stone.id)
-
-
-def naive_maps(occupied, mask):
-    """By convolution: where it overlaps nothing, and where it does not even touch anything."""
+def test_maps_are_those_of_every_position_and_the_chosen_one_is_worth_most(outputs, amid):
+    occupied = amid.moment.wall.occupied
+    posed, *chosen = amid.moment.trial(amid.posed.stone.id)
+    found = fig6_8.position_maps(occupied, posed.mask)
+    # By convolution: where it overlaps nothing, and where it does not even touch anything
     grown = ndimage.binary_dilation(np.pad(occupied, 1, constant_values=True))[1:-1, 1:-1]
-    return tuple(areas_by_convolution(scene, mask) == 0 for scene in (occupied, grown))
-
-
-def test_maps_are_those_of_every_position_and_so_are_counts(outputs, trial):
-    moment, (posed, *_) = trial
-    found = fig6_8.position_maps(moment.wall.occupied, posed.mask)
-    free, floating = naive_maps(moment.wall.occupied, posed.mask)
+    free, floating = (areas_by_convolution(one, posed.mask) == 0 for one in (occupied, grown))
     np.testing.assert_array_equal(found, (free, floating))
     below = np.vstack([free[1:], np.zeros_like(free[:1])])
     resting = np.count_nonzero(free & ~below)
-    counts = [row["count"] for row in rows(outputs["fig8"], "positions")]
+    table = rows(outputs["fig8"], "positions")
     touching = free.sum() - floating.sum()
-    assert counts == [free.size, free.sum(), floating.sum(), touching, resting, 1]
+    counts = [free.size, free.sum(), floating.sum(), touching, resting, 1]
+    assert [row["count"] for row in table] == counts
+    others = amid.moment.positions(posed)[::9].tolist()
+    most, *less = (
+        eq12(occupied, posed.mask, posed.anchor[0], tuple(at), 0.7) for at in (chosen, *others)
+    )
+    assert max(less) <= most + 1e-12
+    *_, touch, rest, own = (row["best: Eq. 12"] for row in table)
+    assert touch >= rest == own == pytest.approx(most, abs=1e-4)
+    assert table[-1]["best: left px"] == chosen[1]
     drawn = set(gids(outputs["fig8"], "fig8"))
     assert len([gid for gid in drawn if gid.startswith("layer-")]) == 4
     assert {"values", "chosen", "best"} <= drawn
-
-
-def test_the_chosen_position_is_worth_most(outputs, trial):
-    moment, (posed, row, col) = trial
-    occupied = moment.wall.occupied
-
-    def value(at):
-        return eq12(occupied, posed.mask, posed.anchor[0], at, 0.7)
-
-    *_, touching, best, chosen = rows(outputs["fig8"], "positions")
-    assert chosen["best: left px"] == col
-    assert chosen["best: Eq. 12"] == pytest.approx(value((row, col)), abs=1e-4)
-    assert best["best: Eq. 12"] == chosen["best: Eq. 12"] <= touching["best: Eq. 12"]
-    others = moment.positions(posed)[::9].tolist()
-    assert max(map(value, map(tuple, others))) <= value((row, col)) + 1e-12
 
 
 def test_positions_and_their_values_are_drawn_at_the_centroids():
@@ -274,13 +249,13 @@ def test_counts_add_up_and_the_most_turned_and_the_largest_wedge_are_drawn(outpu
     assert count["sign of AB x AC is wrong"] == len(wrong)
     table = rows(outputs["fig9"], "cases")
     assert [row["pose"] for row in table] == ["tried", "turned", "wedged", "tried", "wedged"]
-    wide = [
-        case for case in cases
-        if case.turned is not None and case.wedged is not None
-        and case.trial.support.right_x - case.trial.support.left_x
-        >= 0.1 * case.trial.pose[0].width_px
-    ]  # fmt: skip
-    assert abs(table[1]["turned deg"]) == max(abs(case.turn_deg) for case in wide)
+    turns = []
+    for case in cases:
+        support, width = case.trial.support, case.trial.pose[0].width_px
+        both = case.turned is not None and case.wedged is not None
+        if both and support.right_x - support.left_x >= 0.1 * width:
+            turns.append(abs(case.turn_deg))
+    assert abs(table[1]["turned deg"]) == max(turns)
     for row in table:
         assert (row["wedge height px"] is None) == (row["pose"] != "wedged")
     drawn = gids(outputs["fig9"], "fig9")

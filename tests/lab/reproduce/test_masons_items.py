@@ -1,5 +1,3 @@
-"""Items that set walls beside the masons' and beside the paper's figures."""
-
 from dataclasses import replace
 
 import numpy as np
@@ -19,8 +17,8 @@ SEEDS = (1, 2)
 
 
 @pytest.fixture(scope="module")
-def data(tmp_path_factory):
-    """A folder with a wall of masons: courses of blocks with gaps of a pixel above and beside."""
+def here(tmp_path_factory):
+    """Has a wall of masons: courses of blocks with gaps of a pixel above and beside."""
     folder = tmp_path_factory.mktemp("data")
     labels = np.zeros((33, 68), np.uint16)
     corners = [
@@ -29,20 +27,11 @@ def data(tmp_path_factory):
     for block, (top, left) in enumerate(corners, 1):
         labels[top : top + 10, max(left, 0) : left + 20] = 20 * block
     Image.fromarray(labels).save(folder / "blocks.png")
-    return folder
+    return context(tmp_path_factory.mktemp("runs"), folder)
 
 
-@pytest.fixture(scope="module")
-def here(tmp_path_factory, data):
-    return context(tmp_path_factory.mktemp("runs"), data)
-
-
-@pytest.fixture(scope="module")
-def wall(data):
-    return masons.masons_wall(BLOCKS, data)
-
-
-def test_gaps_are_closed_in_every_way(wall):
+def test_fig13_closes_gaps_in_every_way(here):
+    wall = masons.masons_wall(BLOCKS, here.data)
     found = {way: told for way, *told in masons.treatments(wall)}
     assert found["as traced"] == [None, "unstable"]
     assert found["gaps up to 1 px closed"][1] == "optimal"
@@ -50,9 +39,6 @@ def test_gaps_are_closed_in_every_way(wall):
     by_hand = lateral_resistance(model_from_labels(wall.papers_way).model).value
     assert papers == pytest.approx(by_hand, abs=1e-4)
     assert (wall.papers_way > 0).sum() > (wall.labels > 0).sum()
-
-
-def test_fig13(here, wall):
     output = of("fig13", (BLOCKS,)).make(here)
     traced, closed, papers = rows(output, "fig13")
     measured = measure_labels(wall.labels)

@@ -94,12 +94,8 @@ def test_wedges(here):
         area = sum(row["area, px2"] for row in mine)
         assert area == pytest.approx(outcome.figures["wedge_area"])
         built = outcome.wall(wall.run(2), None)
-        ids = [wedge.id for wedge in built.wedges]
-        heights = [int((built.labels == each).any(axis=1).sum()) for each in ids]
+        heights = [(built.labels == wedge.id).any(axis=1).sum() for wedge in built.wedges]
         assert [row["height, px"] for row in mine] == heights
-        chosen = ways.shown(built)
-        largest = max((int((built.labels == each).sum()) for each in ids), default=None)
-        assert (chosen[0].area_px if chosen else None) == largest
 
 
 def test_the_largest_wedges_are_shown_once():
@@ -138,8 +134,6 @@ def test_all_methods(here):
         (outcome,) = here.run([wall.run(here.seed, ("sampling", sampling), *two_sided)])
         assert row["F_SF"] == pytest.approx(outcome.figures["F_SF"], abs=1e-4)
         assert row["placed"] == outcome.figures["placed"]
-        sides = {step.get("side", "left") for step in outcome.plan["steps"]}
-        assert len(sides) == 1 + len(two_sided)
     assert [(one.name, len(one.figure.axes)) for one in output.pictures] == [("figB31", 8)]
 
 
@@ -198,11 +192,9 @@ def test_more_walls_tell_a_difference():
 def test_variants(here):
     walls = (replace(RUBBLE, name="free"), replace(RUBBLE, name="framed", width=84))
     found = ways.named_variants(here, ((walls[0], ways.NAMED), (walls[1], {})), 2)
-    assert [(one.wall.name, one.way) for one in found] == [
-        ("free", "paper"), *(("free", way) for way in ways.NAMED), ("framed", "paper")
-    ]  # fmt: skip
-    for one in found:
-        assert all(spec.changes == ways.NAMED.get(one.way, ()) for spec in one.specs)
+    free = [("free", *way) for way in ({"paper": ()} | ways.NAMED).items()]
+    told = [(one.wall.name, one.way, spec.changes) for one in found for spec in one.specs]
+    assert told == [one for one in (*free, ("framed", "paper", ())) for _ in range(2)]
 
 
 def test_resolutions_stones_and_clusters(here):
@@ -264,22 +256,16 @@ def test_generated_stones_stand_in_for_published_ones_and_are_no_references(data
     assert found.F_SF == pytest.approx(0.659, abs=5e-4)
 
 
-def two_piers(gap):
-    """A slab on two stones, gap px above them, in an image of 60 x 120 px."""
-    labels = np.zeros((60, 120), np.uint32)
-    labels[40:, :40] = 1
-    labels[40:, 80:] = 2
-    labels[20 - gap : 40 - gap, :] = 3
-    return labels
-
-
 def test_a_reference_is_measured_on_all_of_its_image_with_its_gaps_closed():
-    found = noise.measured(two_piers(0), 0.5)
+    labels = np.zeros((60, 120), np.uint32)  # a slab on two stones
+    labels[40:, :40], labels[40:, 80:], labels[20:40] = 1, 2, 3
+    found = noise.measured(labels, 0.5)
     assert found.metrics.stones == 3
     assert found.metrics.F_SF == pytest.approx((2 * 40 * 20 + 120 * 20) / (60 * 120))
     assert found.metrics.F_LR is not None
     assert found.resistances == pytest.approx([found.metrics.F_LR] * 4)
-    found = noise.measured(two_piers(8), 0.5)
+    labels[:40] = np.roll(labels[:40], -8, axis=0)  # and 8 px above them
+    found = noise.measured(labels, 0.5)
     open_, _, twice, thrice = found.resistances
     assert open_ is twice is found.metrics.F_LR is None
     assert thrice is not None

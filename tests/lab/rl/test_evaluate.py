@@ -1,5 +1,3 @@
-"""Policies side by side."""
-
 import numpy as np
 import pytest
 from scipy.stats import ttest_rel
@@ -7,8 +5,6 @@ from scipy.stats import ttest_rel
 from drystone.search.goal import GoalSettings
 from drystone_lab.rl.episode import DrawSettings
 from drystone_lab.rl.evaluate import FIGURES, difference, figures_by, held_out_wall, main, report
-
-DRAW = DrawSettings(stones=6, size_px=10.0)
 
 
 def test_a_report_has_means_and_differences_with_intervals_of_the_paired_t_test():
@@ -30,7 +26,8 @@ def test_a_report_has_means_and_differences_with_intervals_of_the_paired_t_test(
 
 
 def test_figures_of_a_policy_are_those_of_its_walls():
-    walls = [held_out_wall("brick", number, DRAW) for number in range(2)]
+    draw = DrawSettings(stones=6, size_px=10.0)
+    walls = [held_out_wall("brick", number, draw) for number in range(2)]
     found = figures_by("lowest", walls)
     assert list(found) == list(FIGURES)
     assert found == figures_by("lowest", walls)

@@ -1,5 +1,3 @@
-"""A training run in seconds."""
-
 from dataclasses import replace
 
 import numpy as np
@@ -81,23 +79,21 @@ def test_command_refuses(wrong, tmp_path):
     assert caught.value.code == 2
 
 
-WEIGHTS = [1.0, -2.0, 0.0]
-
-
-def made(count, weights, noise=0.0):
-    """Return branchings whose merits are weighted sums of features, and a sum of their own."""
-    rng = np.random.default_rng(5)
-    for _ in range(count):
-        features = rng.normal(size=(4, len(weights)))
-        merits = features @ np.array(weights) + rng.normal() + noise * rng.normal(size=4)
-        yield train.Branching(features, merits)
-
-
 def test_fit_finds_the_weights_whatever_the_walls_are_worth_and_is_drawn_to_zero():
+    weights = [1.0, -2.0, 0.0]
+
+    def made(count, noise=0.0):
+        """Branchings whose merits are weighted sums of features, and a sum of their own."""
+        rng = np.random.default_rng(5)
+        for _ in range(count):
+            features = rng.normal(size=(4, 3))
+            merits = features @ weights + rng.normal() + noise * rng.normal(size=4)
+            yield train.Branching(features, merits)
+
     for count, noise, off in ((50, 0.0, 1e-6), (2000, 1.0, 0.06)):
-        found = train.fitted(list(made(count, WEIGHTS, noise)), 1e-9)
-        assert found == pytest.approx(WEIGHTS, abs=off)
-    data = list(made(50, WEIGHTS))
+        found = train.fitted(list(made(count, noise)), 1e-9)
+        assert found == pytest.approx(weights, abs=off)
+    data = list(made(50))
     assert train.fitted(data, 1e9) == pytest.approx(np.zeros(3), abs=1e-4)
     # 50 times 4 places: as many zeros halve them.
     halved = train.fitted(data, 200.0)

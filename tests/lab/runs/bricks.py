@@ -1,8 +1,6 @@
-"""Small runs, and runs that end badly."""
-
 import os
 import signal
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 from drystone.generate import lay_out
@@ -21,11 +19,6 @@ def run(seed, source=SOURCE):
     return RunSpec(source=source, width=60, height=20, seed=seed)
 
 
-def endless():
-    """Return a run that does not end within a test."""
-    return replace(run(0), method="best", changes=(("search.budget", 10**6),))
-
-
 @dataclass(frozen=True, kw_only=True)
 class Deadly(RunSpec):
     """A run at which its process dies: every time, or once when a file can be made."""
@@ -42,7 +35,6 @@ class Deadly(RunSpec):
 
 
 def deadly(seed, once=None):
-    """Return a run at which its process dies."""
     return Deadly(source=SOURCE, width=60, height=20, seed=seed, once=str(once or ""))
 
 

@@ -3,7 +3,7 @@ import sys
 import threading
 import time
 from importlib.metadata import PackageNotFoundError, version
-from types import SimpleNamespace
+from unittest.mock import Mock
 
 import pytest
 
@@ -88,19 +88,18 @@ def test_a_run_that_fails_is_told(thread, tmp_path):
     assert not kept(tmp_path, run(2, NOT_SIX))
 
 
-def test_what_ended_is_given_before_an_interrupt(thread):
+def test_what_ended_is_given_before_an_interrupt(work):
     specs = [run(1), run(2), run(3)]
-    with cluster_at_work(thread.scheduler_address) as work:
-        outcomes = work(specs, None)
-        keys = [next(outcomes).key]
-        others = outcomes.gi_frame.f_locals["asked"].values()
-        until = time.monotonic() + 60
-        while {future.status for future in others} != {"finished"}:
-            assert time.monotonic() < until
-            time.sleep(0.01)
-        keys += [outcomes.throw(KeyboardInterrupt).key, next(outcomes).key]
-        with pytest.raises(KeyboardInterrupt):
-            next(outcomes)
+    outcomes = work(specs, None)
+    keys = [next(outcomes).key]
+    others = outcomes.gi_frame.f_locals["asked"].values()
+    until = time.monotonic() + 60
+    while {future.status for future in others} != {"finished"}:
+        assert time.monotonic() < until
+        time.sleep(0.01)
+    keys += [outcomes.throw(KeyboardInterrupt).key, next(outcomes).key]
+    with pytest.raises(KeyboardInterrupt):
+        next(outcomes)
     assert sorted(keys) == sorted(spec.key for spec in specs)
 
 
@@ -152,34 +151,25 @@ HERE = version("drystone")
     ],
 )
 def test_other_versions(scheduler, workers, said):
-    def on_scheduler(function, name):
-        assert (function, name) == (version, "drystone")
-        if scheduler is None:
-            raise PackageNotFoundError(name)
-        return scheduler
-
-    def on_workers(function, name, *, on_error):
-        assert (function, name, on_error) == (version, "drystone", "return")
-        return {at: one or PackageNotFoundError(name) for at, one in workers.items()}
-
-    client = SimpleNamespace(run=on_workers, run_on_scheduler=on_scheduler)
+    client, none = Mock(), PackageNotFoundError("drystone")
+    client.run.return_value = {at: one or none for at, one in workers.items()}
+    client.run_on_scheduler.side_effect = [scheduler or none]
     with pytest.raises(UsageError, match=f"E405 .*drystone is {HERE} here, {said}"):
         check_versions(client)
+    client.run.assert_called_once_with(version, "drystone", on_error="return")
+    client.run_on_scheduler.assert_called_once_with(version, "drystone")
 
 
-def refused(address, said, patience_s):
+def refused(address, said, patience_s=2.0):
     with pytest.raises(UsageError, match=said), cluster_at_work(address, patience_s=patience_s):
         pass
 
 
-@pytest.mark.parametrize("address", ["tcp://127.0.0.1:9", "nonsense://here"])
-def test_nobody_answers(address):
-    refused(address, f"E404.*{address}", 0.3)
-    gc.collect()  # lets go of the client now: while another one begins, its end would wait for that
-
-
-def test_a_cluster_without_workers_and_one_without_dask(monkeypatch):
+def test_nobody_answers_there_are_no_workers_or_there_is_no_dask(monkeypatch):
+    for address in ("tcp://127.0.0.1:9", "nonsense://here"):
+        refused(address, f"E404.*{address}", 0.3)
+    gc.collect()  # lets go of the clients now: while another begins, their end would wait for that
     with distributed.LocalCluster(n_workers=0, processes=False, **QUIET) as cluster:
-        refused(cluster.scheduler_address, r"E404 .*has no workers", 2.0)
+        refused(cluster.scheduler_address, r"E404 .*has no workers")
     monkeypatch.setitem(sys.modules, "distributed", None)
-    refused("tcp://127.0.0.1:9", r"E403 .*drystone\[dask\]", 2.0)
+    refused("tcp://127.0.0.1:9", r"E403 .*drystone\[dask\]")

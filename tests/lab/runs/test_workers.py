@@ -3,6 +3,7 @@ import signal
 import threading
 from concurrent.futures import Future
 from contextlib import nullcontext
+from dataclasses import replace
 
 import pytest
 
@@ -10,7 +11,7 @@ from drystone.errors import DrystoneError, UsageError
 from drystone_lab.runs import workers
 from drystone_lab.runs.outcome import Runner, one_by_one
 from drystone_lab.runs.workers import ONE_THREAD, Crew, work_of
-from tests.lab.runs.bricks import NOT_SIX, deadly, endless, kept, run
+from tests.lab.runs.bricks import NOT_SIX, deadly, kept, run
 
 
 def test_options_name_who_works(monkeypatch):
@@ -39,10 +40,6 @@ class AtOnce:
         assert (wait, kill_workers) == (True, True)
 
 
-def interrupt_soon(_):
-    threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGINT)).start()
-
-
 @pytest.mark.usefixtures("interruptible")
 def test_deaths_and_interrupts_lose_nothing_that_ended(tmp_path):
     with work_of(2, None) as work:
@@ -53,8 +50,10 @@ def test_deaths_and_interrupts_lose_nothing_that_ended(tmp_path):
         # Another process is in the place of the dead one.
         found = [one.plan for one in runner.run([run(1), run(3), run(4), run(5)])]
         assert found[:2] == [one.plan for one in one_by_one([run(1), run(3)], None)]
+        soon = threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGINT))
+        endless = replace(run(0), method="best", changes=(("search.budget", 10**6),))
         with pytest.raises(KeyboardInterrupt):
-            Runner(tmp_path, work=work, say=interrupt_soon).run([run(6), endless()])
+            Runner(tmp_path, work=work, say=lambda _: soon.start()).run([run(6), endless])
         assert kept(tmp_path, run(6))
 
 
@@ -70,7 +69,8 @@ def test_a_run_that_fails_does_not_stop_those_that_have_begun(tmp_path, monkeypa
 def test_processes_have_one_thread_and_are_used_again_or_not(monkeypatch, fresh):
     monkeypatch.setenv(ONE_THREAD[0], "2")
     with Crew(1, fresh=fresh) as processes:
-        ids, threads = zip(*processes.work(pid_and, 2 * ONE_THREAD[:1]), strict=True)
+        found = processes.work(lambda name: (os.getpid(), os.environ[name]), 2 * ONE_THREAD[:1])
+        ids, threads = zip(*found, strict=True)
     assert threads == ("1", "1")
     ids = set(ids)
     assert os.getpid() not in ids
@@ -78,8 +78,3 @@ def test_processes_have_one_thread_and_are_used_again_or_not(monkeypatch, fresh)
     for one in ids:
         with pytest.raises(ProcessLookupError):
             os.kill(one, 0)
-
-
-def pid_and(name):
-    """Return the number of this process and a variable of its environment."""
-    return os.getpid(), os.environ[name]
