@@ -179,6 +179,30 @@ def test_bands_round_a_picture_are_no_ground_and_even_ground_is_no_band():
         assert (found.count, found.left_out) == (2, ())
     slab = (np.abs(ROWS - 150) < 60) & (np.abs(COLS - 200) < 170)
     assert segment_photo(drawn(slab, noise=0.0)[::2, ::2]).found.count == 1
+    # Stones that lie close: along most of a row or column there is no ground.
+    close = [disc(60 + 60 * row, 60 + 56 * col, 27) for row in range(4) for col in range(6)]
+    assert segment_photo(drawn(*close, ground=(255, 255, 255), noise=0.5)).found.count == 24
+
+
+def test_a_sheet_is_not_taken_for_a_stone_in_silence_but_a_large_stone_is_one():
+    sheet = (np.abs(ROWS - 150) < 80) & (np.abs(COLS - 200) < 100), (60, 110, 180)
+    stones = [disc(150 + down, 200 + right, 24) for down in (-40, 40) for right in (-60, 0, 60)]
+    for layers, reasons in (([sheet, *stones], ["may be the sheet"]), ([sheet], [])):
+        found = segment(drawn(*layers, ground=(170, 140, 110)))
+        assert found.count == 1
+        said = verdict_of(found, doubts_of(found))
+        assert len(said) == len(reasons)
+        assert all(reason in one for one, reason in zip(said, reasons, strict=True))
+
+
+def test_a_stone_of_which_a_part_was_taken_for_shadow_is_in_doubt():
+    level = replace(MORE, ground="cloth", rocks=("granite",), shadow=0.5, uneven=0.2, seed=3)
+    made = photograph(level)
+    found = segment(pixels(made))
+    ious = overlaps(made.truth_in(np.eye(3), found.labels.shape), found.labels).max(axis=0)
+    bitten = np.flatnonzero(ious < 0.9) + 1
+    assert len(bitten) == 2
+    assert set(bitten) <= set(found.shaded)
 
 
 @pytest.mark.parametrize("ground", ["light", "dark"])

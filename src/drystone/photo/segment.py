@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 from skimage.feature import peak_local_max
+from skimage.measure import regionprops
 from skimage.segmentation import watershed
 
 from drystone.errors import InputError
@@ -24,6 +25,12 @@ _FLOOR_SHARE = 2e-4
 ROUGH = 6.0
 """What a ground varies in CIELAB, robust standard deviation, that is no cloth, wood or gravel."""
 
+PLAIN = 5.0
+"""Contrast of the usual outline over what the ground itself varies: from here on it is plain.
+
+Photographs of river beds, walls and rooms have .8 to 4.7, stones on tarpaulin, cloth, wood, gravel
+and grass 6.2 and more."""
+
 VARIED = 4.0
 """The same from which its grain hides stones of about its colour."""
 
@@ -32,6 +39,12 @@ _GRAIN_PX = 4
 
 _HIDDEN, _HIDDEN_SHARE = 4.0, 0.125
 """Distance from the blurred ground, in standard deviations, and least share of a usual stone."""
+
+_BITTEN = 0.05
+"""What was taken for shadow within the convex hull of a stone, over the stone, that is in doubt."""
+
+_SHEET, _ON_SHEET = 0.1, 3
+"""Share of the picture of a stone that may be a sheet, and how many stones lie on one at least."""
 
 _HORN = 0.12
 """Half the thickness of ends that are no stone, over that of the stone."""
@@ -95,6 +108,7 @@ class FoundStones:
     necks: tuple[Neck, ...]  # cut and doubtful ones
     contrast: tuple[float, ...]  # along the weakest quarter of each outline, in CIELAB
     shaded: tuple[int, ...]  # stones with a part that may be shadow
+    sheet: int | None  # the stone on which stones lie apart as on a ground
     left_out: tuple[LeftOut, ...]  # shapes that were not taken for stones
     ground: GroundModel
     shadow_level: float  # light in cast shadows over that beside them; 1 when there are none
@@ -150,7 +164,13 @@ def segment(
     # Stones of which a part, but not all, has the colour of shaded ground.
     body = ndimage.binary_opening(alike & (found > 0), iterations=3)
     share = np.bincount(found[body], minlength=found.max() + 1) / np.bincount(found.ravel())
-    shaded = np.flatnonzero((share > 0.15) & (share < 0.85) & (np.arange(len(share)) > 0))
+    shaded = [
+        int(region.label)
+        for region in regionprops(found)
+        # A part of it was taken for shadow, or a part of what was left of it may be.
+        if 0.15 < share[region.label] < 0.85
+        or (shadows[region.slice] & region.image_convex).sum() > _BITTEN * region.area
+    ]
     left_out = (
         *shapes(cut, EDGE), *shapes(beside, PAPER), *lost(unlike, known, causes, least_px),
         *shapes(small, SMALL),
@@ -160,11 +180,27 @@ def segment(
         labels=found,
         necks=tuple(neck for neck in necks if stones_at(found, neck.at_px)),
         contrast=tuple(contrast.tolist()),
-        shaded=tuple(shaded.tolist()),
+        shaded=tuple(shaded),
+        sheet=_sheet_among(image, found, ground),
         left_out=left_out,
         ground=model,
         shadow_level=shadow_level,
     )
+
+
+def _sheet_among(image: NDArray[np.uint8], found: NDArray[np.uint16], ground: Ground) -> int | None:
+    """Return the stone that is a sheet: within it stones lie apart on a ground of its colour."""
+    areas = np.bincount(found.ravel())
+    areas[0] = 0
+    largest = int(areas.argmax())
+    if areas[largest] < _SHEET * found.size:
+        return None
+    try:
+        within = segment(image, found == largest, ground=ground)
+    except InputError:
+        return None
+    plain = float(np.median(within.contrast)) > PLAIN * float(within.ground.spread.max())
+    return largest if plain and within.count >= _ON_SHEET else None
 
 
 def _solid(mask: Mask, usable: Mask) -> Mask:

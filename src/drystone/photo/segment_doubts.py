@@ -9,7 +9,7 @@ from skimage.measure import regionprops
 
 from drystone.errors import Notice
 from drystone.model.stone_size import sizes_of
-from drystone.photo.segment import EDGE, FAINT, PAPER, VARIED, FoundStones, stones_at
+from drystone.photo.segment import EDGE, FAINT, PAPER, PLAIN, VARIED, FoundStones, stones_at
 
 _LOW_CONTRAST = 8.0
 """Distance in CIELAB from the ground below which an outline is not to be relied on."""
@@ -24,11 +24,6 @@ _RULED = 0.8
 LISTED = 8
 """Shapes that were left out and that a notice names."""
 
-_CLEAR = 5.0
-"""Contrast of the usual outline over what the ground itself varies: from here on it is plain.
-
-Photographs of river beds, walls and rooms have .8 to 4.7, stones on tarpaulin, cloth, wood, gravel
-and grass 6.2 and more."""
 _LITTLE, _VERY_LITTLE = 0.05, 0.01
 """Shares of the photograph that are stone, least on varied ground and on any."""
 _UNEVEN = 0.85
@@ -195,7 +190,7 @@ def verdict_of(found: FoundStones, doubts: Iterable[Doubt] = ()) -> tuple[str, .
     varies = float(found.ground.spread.max())
     contrast = float(np.median(found.contrast))
     reasons = []
-    if contrast < _CLEAR * varies:
+    if contrast < PLAIN * varies:
         reasons.append(
             f"the ground is not plain (its colour varies by {varies:.0f}, and what was found "
             f"differs from it by {contrast:.0f}, in CIELAB)"
@@ -205,7 +200,7 @@ def verdict_of(found: FoundStones, doubts: Iterable[Doubt] = ()) -> tuple[str, .
         reasons.append(
             f"the light is very uneven (the darkest ground has {percent:.0f} % of the brightest)"
         )
-    if areas.max() > _SHEET * shown:
+    if areas.max() > _SHEET * shown or found.sheet is not None:
         percent = 100 * float(areas.max()) / shown
         reasons.append(
             f"stone {int(areas.argmax()) + 1} takes up {percent:.0f} % of the photograph and may "

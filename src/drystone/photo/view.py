@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy import ndimage
 
 from drystone.errors import InputError, Notice
 from drystone.photo.markers import load_cv2
@@ -96,14 +97,22 @@ def rectify(image: NDArray[np.uint8], view: View, max_px: int) -> Rectified:
 
 def without_bands(image: NDArray[np.uint8]) -> NDArray[np.bool_]:
     """Return all but bands of one colour along the edges, beyond which most has another one."""
-    shown = np.ones(image.shape[:2], bool)
+    within, bands = np.ones(image.shape[:2], bool), []
     for turns in range(4):
         rows = np.rot90(image, turns)
-        away = rows[:, :: 1 + rows.shape[1] // 500].astype(np.int16)
+        step = 1 + rows.shape[1] // 500
+        away = rows[:, ::step].astype(np.int16)
         away = np.abs(away - away[0, 0]).max(axis=-1)
         end = int((np.median(away, axis=1) > 16).argmax())
         even = away[: end // 2 + 1] <= 3  # blocks of a JPEG blur the end of a band
         if even.mean() > 0.98 and np.median(away[end:]) > 16:
+            np.rot90(within, turns)[:end] = False
+            bands.append((turns, end, step, ndimage.label(away <= 16)[0]))
+    shown = np.ones_like(within)
+    for turns, end, step, alike in bands:
+        # Ground goes on between stones that lie close; a band ends along its whole side.
+        beyond = alike[np.rot90(within, turns)[:, ::step]]
+        if (beyond == alike[0, 0]).mean() < 0.03:
             np.rot90(shown, turns)[:end] = False
     return shown
 
