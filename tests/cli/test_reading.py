@@ -106,6 +106,12 @@ def test_stones_are_converted_with_their_ids_and_scale_or_refused(tmp_path, run)
     for name in ("stones", "total_area_px", "width_px", "height_px", "clusters", "px_per_m"):
         assert again[name] == first[name]
     assert "m high" in run("analyse", to, "--close-gaps", "1", "--associative-only").out
+    holed = np.pad(np.ones((12, 16), np.uint8), 9)
+    holed[14:18, 12:17] = 0
+    Image.fromarray(holed).save(tmp_path / "holed.png")
+    kept, outlines = ("--holes", "keep", "--json"), tmp_path / "holed.json"
+    run("stones", tmp_path / "holed.png", "--no-mask", *kept, "--labels", outlines)
+    assert run("stones", outlines, *kept).json()["total_area_px"] == 12 * 16 - 20
     masks = tmp_path / "masks"
     masks.mkdir()
     for number in (1, 2):

@@ -188,6 +188,10 @@ def test_geojson_in_px_of_an_image_or_of_a_map(tmp_path):
     crs = {"type": "name", "properties": {"name": "urn:ogc:def:crs:EPSG::25832"}}
     with pytest.raises(InputError, match=r"E116.*a map.*--unit m"):
         read(tmp_path, geojson(crs=crs))
+    degrees = geojson(lambda ring: np.array(ring) * 1e-5 + (8.5, 47.1), crs="EPSG:4258")
+    for unit in ("", "m"):
+        with pytest.raises(InputError, match=r"E116.*degrees of lat.*Project it to metres"):
+            read(tmp_path, degrees, replace(PIECES, unit=unit))
     assert read(tmp_path, geojson(crs=crs), replace(PIECES, unit="m")).source.px_per_m
     assert compare(read(tmp_path, geojson(crs=crs), replace(PIECES, unit="px"))) == 1.0
 
@@ -264,6 +268,8 @@ AGAIN = "all are numbered in order"
         ("labelme", ["a", "b", "c"], [1, 2, 3], None),
         ("labelme", ["0", "0", "0"], [1, 2, 3], None),  # labels of a class
         ("labelme", ["stone 9", "8", "07"], [7, 8, 9], None),
+        ("labelme", [9.0, 8, "07"], [7, 8, 9], None),
+        ("coco", [9.0, 8.0, 7.0], [7, 8, 9], None),
     ],
 )  # fmt: skip
 def test_numbers_are_kept_or_it_is_said_that_they_are_not(tmp_path, form, given, ids, said):

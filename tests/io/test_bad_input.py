@@ -138,6 +138,7 @@ def test_what_is_left_out_or_added_is_said():
         (HOLED, None, WHOLE, "W112", "holes filled: stone 5: 20 px."),
         (HOLED, ReadSettings(holes="keep"), {5: 355, 9: 600}, "W112", "holes kept open"),
         (WITHIN, None, {**WHOLE, 77: 36}, "W112", "stone 5: 36 px, 36 px of them other stones'"),
+        (WITHIN, ReadSettings(skip=(77,)), WHOLE, "W112", "holes filled: stone 5: 36 px."),
         (SPECKS, None, WHOLE, "W113", "2 specks < 10 px left out (10 px in all): "
          "11 of 9 px at column 50, row 1, 12 of 1 px at column 0"),
         (SPECKS, ReadSettings(min_area_px=1), {**WHOLE, 11: 9, 12: 1}, "", ""),

@@ -157,8 +157,11 @@ def test_dxf_versions_and_binary(tmp_path, version, kind):
     for layer, left in (("Stein ä", 0), ("Maß", 200)):
         corners = [(left, 0), (left + 100, 0), (left + 100, 60)]
         document.modelspace().add_lwpolyline(corners, close=True, dxfattribs={"layer": layer})
-    names = [stone.name for stone in read_stones(saved(document, tmp_path, fmt=kind))]
-    assert names == ["Stein ä", "Maß"]
+    data = saved(document, tmp_path, path.name, fmt=kind).read_bytes()
+    begin_and_end = ((b"", b"\r"), (b"\xef\xbb\xbf", b"\r\n")) if kind == "asc" else ()
+    for begin, end in ((b"", b"\n"), *begin_and_end):
+        path.write_bytes(begin + data.replace(b"\n", end))
+        assert [stone.name for stone in read_stones(path)] == ["Stein ä", "Maß"]
 
 
 def test_dxf_curves(tmp_path):

@@ -96,6 +96,29 @@ def test_repeats(tmp_path, form, shift, truth):
     assert said(found).count(" again)") == 12
 
 
+@pytest.mark.parametrize("form", ["labelme", "dxf"])
+def test_what_is_no_stone_costs_no_stone_its_number(tmp_path, form):
+    *rings, more = stones()[:4]
+    named = [(f"stone {i}", ring) for i, ring in zip((12, 3, 7), rings, strict=True)]
+    nothing = ("dot", box(9.6, 9.6, 9.7, 9.7))
+    shapes = [("all", box(2, 2, 357, 258)), *named, nothing, named[1]]
+    found = read(tmp_path, form, shapes)
+    for part in ("13 all (a frame around 3, 7, 12)", "15 stone 3 (3 again)"):
+        assert part in said(found)
+    assert "in order" not in said(found)
+    # Numbers mean the same whatever is skipped or kept.
+    for settings, ids in (
+        ({}, [3, 7, 12]),
+        ({"skip": (7, 13)}, [3, 12]),
+        ({"keep": (13,)}, [13]),
+        ({"keep": (15,)}, [3, 7, 12, 15]),
+    ):
+        assert [stone.id for stone in read(tmp_path, form, shapes, **settings)] == ids
+    found = read(tmp_path, form, [*shapes, ("new", more)])
+    assert [stone.id for stone in found] == [2, 3, 4, 7]
+    assert "1 of 4 stones without a number: all are numbered in order (12 is now 2," in said(found)
+
+
 @pytest.mark.parametrize("form", ["labelme", "svg", "dxf"])
 def test_real_stones_stay(tmp_path, form):
     touching = [box(10, 10, 60, 60), box(60, 10, 110, 60), box(35, 60, 90, 100)]
@@ -103,6 +126,9 @@ def test_real_stones_stay(tmp_path, form):
     found = read(tmp_path, form, [*touching, *overlapping, box(10, 110, 350, 255)])
     assert len(found) == 6
     assert "not stones" not in said(found)
+    assert "stones overlap" in said(found)
+    skipped = read(tmp_path, form, [*touching, *overlapping, box(300, 10, 400, 99)], skip=(5, 6))
+    assert not {"overlap", "outside"} & set(said(skipped).split())
     assert len(read(tmp_path, form, [box(1, 1, 359, 259)])) == 1
 
 
@@ -170,6 +196,12 @@ def test_a_folder_or_arrays_of_all_that_a_program_masks(tmp_path):
     assert len(read_stones(tmp_path, settings=ReadSettings(keep=(15,)))) == 13
     other = read_stones(tmp_path, settings=ReadSettings(skip=(10, 11)))
     assert 16 in {stone.id for stone in other}  # the group became a stone
+    # A piece has no number of what is left out.
+    (tmp_path / "two").mkdir()
+    two = folder_of(tmp_path / "two", [masks[0] | masks[1], masks[2], ~np.any(masks[:3], axis=0)])
+    for skip, ids in (((), [1, 2, 4]), ((4,), [1, 2])):
+        split = read_stones(two, settings=ReadSettings(pieces="split", skip=skip))
+        assert [stone.id for stone in split] == ids
     named = {f"stone_{i}": mask for i, mask in enumerate([*masks, ground], start=1)}
     np.savez(tmp_path / "a.npz", **named)
     found = read_stones(tmp_path / "a.npz")

@@ -351,6 +351,16 @@ def test_a_layer_of_stones_is_all_that_counts():
     assert "1 shapes outside the group STONES" in said
 
 
+def test_a_number_beside_a_label_of_inkscape_counts():
+    body = STONE.format(' id="stone_7" i:label="granite"')
+    for inner in (' id="path1"', ' id="stone_4" i:label="stone 9"'):
+        body += f'<g id="stone_5" i:label="slate">{STONE.format(inner)}</g>'
+    inkscape = 'xmlns:i="http://www.inkscape.org/namespaces/inkscape"'
+    stones = read_svg(svg(f"<g {inkscape}>{body}</g>").encode(), ReadSettings()).stones
+    known = [(7, "granite"), (5, "path1"), (9, "stone 9")]
+    assert [(stone.id, stone.name) for stone in stones] == known
+
+
 def test_areas_by_closed_forms():
     for data, expected in (
         ("m 1 1 h4 v3 h-4 z m 10 0 h4 v3 h-4 z", 24.0),  # z comes back to where it began

@@ -1,7 +1,7 @@
 """Stones cut out of label images, with their holes and pieces put in order."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import chain
@@ -126,33 +126,44 @@ def check_count(count: int) -> None:
         raise LabelImageError("E110", what, cure=cure)
 
 
-def cut(index: NDArray[Any], ids: NDArray[np.int64], name: str = "") -> list[StonePatch]:
+def cut(
+    index: NDArray[Any], ids: NDArray[np.int64], name: str = "", skip: Sequence[int] = ()
+) -> list[StonePatch]:
     """Cut every id out of an image, each looked at within its bounding box only.
 
     `index`, (h, w), has positions from 1 in `ids`; an index of 0 and an id of 0 are background.
+    What is skipped is cut out as well, but is no other stone.
     """
     stone = np.concatenate(([False], ids != 0))
+    other = stone & ~np.isin(np.concatenate(([0], ids)), skip)
     patches = []
     for position, window in enumerate(ndimage.find_objects(index), start=1):
         if window is None or not stone[position]:
             continue
         inside = index[window]
         mask = inside == position
-        others = stone[inside] & ~mask
+        others = other[inside] & ~mask
         row, col = window[0].start, window[1].start
         patches.append(StonePatch(mask, row, col, int(ids[position - 1]), len(index), others, name))
     return patches
 
 
 def stone_set(
-    found: Sequence[StonePatch], notices: Sequence[Notice], source: Source, settings: ReadSettings
+    found: Sequence[StonePatch],
+    notices: Sequence[Notice],
+    source: Source,
+    settings: ReadSettings,
+    taken: Collection[int] = (),
 ) -> StoneSet:
-    """Put patches in order and make stones of them; every decision becomes a notice."""
+    """Put patches in order and make stones of them; every decision becomes a notice.
+
+    Numbers `taken` are those of the file, also of what is left out.
+    """
     pieces_so_far = 0
     for patch in found:
         pieces_so_far += len(patch.piece_areas_px)
         check_count(pieces_so_far)
-    numbers = piece_numbers(found, settings)
+    numbers = piece_numbers(found, settings, taken)
     known = {patch.id for patch in found}.union(*numbers.values())
     skip = set(settings.skip)
     noticed = list(notices)
@@ -238,18 +249,24 @@ def _filled(
     return result, [Notice("W112", f"holes filled: {listed(found, '; ', MANY)}.", cure)]
 
 
-def piece_numbers(patches: Sequence[StonePatch], settings: ReadSettings) -> dict[int, list[int]]:
+def free_numbers(used: Collection[int]) -> Iterator[int]:
+    """Return those that follow the largest one used; where ids end, the free ones from 1."""
+    numbers = chain(range(max(used, default=0) + 1, MAX_ID + 1), range(1, MAX_ID + 1))
+    return (number for number in numbers if number not in used)
+
+
+def piece_numbers(
+    patches: Sequence[StonePatch], settings: ReadSettings, taken: Collection[int] = ()
+) -> dict[int, list[int]]:
     """Return the ids of the further pieces of every patch that is split.
 
-    They come after the largest id (where ids end: the free ones from 1), whatever is skipped.
+    They come after the largest id, also of those `taken` by what is left out, whatever is skipped.
     """
     if settings.pieces != "split" or not patches:
         return {}
     stones, _ = _without_specks(patches, smallest_stone_px(patches, settings))
     whole, _ = _filled(stones, settings)
-    used = {patch.id for patch in patches}
-    numbers = chain(range(max(used) + 1, MAX_ID + 1), range(1, MAX_ID + 1))
-    free = (number for number in numbers if number not in used)
+    free = free_numbers({patch.id for patch in patches}.union(taken))
     several = ((patch.id, patch.piece_areas_px[1:]) for patch in whole)
     return {own: [next(free) for _ in further] for own, further in several if further}
 

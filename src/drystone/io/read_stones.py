@@ -149,12 +149,13 @@ def _read_picture(picture: Picture, source: Source, settings: ReadSettings) -> S
         skip = tuple(i for i in settings.skip if i in values or i not in given)
         settings = replace(settings, skip=skip)
         check_no_zero(image)
-        patches = cut(image.census.index, np.where(values == image.background, 0, values))
+        ids = np.where(values == image.background, 0, values)
+        patches = cut(image.census.index, ids, skip=skip)
         notices = image.notices
     else:
         labels, count = components(binary.mask)
         check_count(count)
-        patches = cut(labels, np.arange(1, count + 1))
+        patches = cut(labels, np.arange(1, count + 1), skip=settings.skip)
         least_px = math.ceil(smallest_stone_px(patches, settings, mask=True))
         settings = replace(settings, min_area_px=least_px)
         between = ""
@@ -237,7 +238,7 @@ def _read_folder(folder: Path, name: str, settings: ReadSettings) -> StoneSet:
     notices += left_out
     height, width = np.max(sizes, axis=0).tolist()
     source = Source(name, digest.hexdigest(), width, height, names, _of_px(settings))
-    return stone_set(patches, notices, source, settings)
+    return stone_set(patches, notices, source, settings, range(1, len(files) + 1))
 
 
 def _natural_order(path: Path) -> tuple[list[str | int], str]:
@@ -386,6 +387,12 @@ def stones_and_outlines(
     kept, classes = of_classes(kept, settings.label)
     stones, renumbered = numbered(kept)
     file = replace(file, stones=stones)
+    if renumbered:
+        # What is no stone needs no number; nor may numbers depend on what is skipped or kept.
+        found, *_ = rastered(file, replace(settings, skip=(), keep=()))
+        left = {stone.id or 0 for stone in stones} - {patch.id for patch in found}
+        stones, renumbered = numbered(kept, left)
+        file = replace(file, stones=stones)
     patches, size_px, px_per_m, said = rastered(file, settings)
     # What has px of its own has no other resolution.
     reading = (settings if px_per_m else replace(settings, px_per_m=None)).changed()
@@ -393,7 +400,8 @@ def stones_and_outlines(
     digest = hashlib.sha256(data).hexdigest()
     source = Source(name, digest, *size_px, (), reading, px_per_m, file.photograph)
     notices = [*file.notices, *wedges, *classes, *renumbered, *said]
-    return stone_set(patches, notices, source, settings), file
+    taken = {stone.id or 0 for stone in stones}
+    return stone_set(patches, notices, source, settings, taken), file
 
 
 _SAID = "this file says itself what is stone, so {option} has no meaning.", "pictures of stones"

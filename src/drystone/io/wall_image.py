@@ -1,5 +1,6 @@
 """Label images of walls in and out, and stones as label images or outlines (DESIGN 2, 4.1)."""
 
+import base64
 import io
 import json
 from pathlib import Path
@@ -145,7 +146,18 @@ def write_stones(stones: StoneSet, path: Path, px_per_m: float | None) -> tuple[
 
 
 def _shape(stone: Stone, height_px: int) -> dict[str, Any]:
-    """Return a stone as a shape of labelme, y down from the top of the image."""
+    """Return a stone as a shape of labelme, y down from the top of the image.
+
+    Polygons of labelme have no holes: a stone that has some is a mask.
+    """
+    if not np.array_equal(stone.mask, stone.solid):
+        rows, cols = stone.mask.shape
+        left, top = stone.left_px, height_px - stone.bottom_px - rows
+        ends, buffer = [[left, top], [left + cols - 1, top + rows - 1]], io.BytesIO()
+        Image.fromarray(stone.mask).save(buffer, format="PNG")
+        mask = base64.b64encode(buffer.getvalue()).decode()
+        shape = {"label": str(stone.id), "points": ends, "shape_type": "mask", "flags": {}}
+        return shape | {"mask": mask}
     x, y = stone.centroid
     corners = stone.outline * (1.0, -1.0) + (x, height_px - y)
     points = np.round(corners, 3).tolist()

@@ -153,7 +153,9 @@ _KEYS = {
     "friction": ("between", "mu"),
     "interfaces": ("between", "points", "normal", "mu"),
 }
-"""Of a block model itself, and of the entries of its lists; those that plans write among them."""
+"""Of a block model itself, and of the entries of its lists; those that plans write among them.
+
+`px_per_m` goes with poses, and counts px of their source: lengths of a plan are in metres then."""
 
 _REMARKS = ("comment", "meta", "name")
 """Keys that anything may have, as it may have those that begin with _."""
@@ -162,14 +164,19 @@ _REMARKS = ("comment", "meta", "name")
 def _unknown_keys(content: Mapping[str, Any]) -> tuple[Notice, ...]:
     """Name the keys of a block model that mean nothing (W307), each where it comes first."""
     found, cures = dict[tuple[str, str], str](), dict[str, None]()
+    posed = False
     for part, known in _KEYS.items():
         entries = content.get(part) if part else [content]
         for place, entry in enumerate(entries if isinstance(entries, list) else (), 1):
             for key in entry if isinstance(entry, dict) else ():
+                posed = posed or key == "source_centroid"
                 if key not in (*known, *_REMARKS) and not key.startswith("_"):
                     where = f" ({part}, entry {place})" if part else ""
                     found.setdefault((part, key), f"{reprlib.repr(key)}{where}")
                     cures[meant(key, known).strip()] = None
+    if "px_per_m" in content and not posed:
+        found["", "px_per_m"] = "'px_per_m'"
+        cures["`drystone analyse --px-per-m` takes units in a metre."] = None
     if not found:
         return ()
     cure = " ".join(filter(None, cures)) or f"Keys of your own: {', '.join(_REMARKS)}, or _KEY."

@@ -42,7 +42,7 @@ def read_labelme(content: Mapping[str, Any], settings: ReadSettings) -> OutlineF
     gathered = Gathered(settings.max_px)
     for number, shape in enumerate(content["shapes"]):
         with entry(f"shape {number} (from 0)"):
-            kind, label = shape.get("shape_type") or "polygon", str(shape.get("label") or "")
+            kind, label = shape.get("shape_type") or "polygon", _text(shape.get("label") or "")
             group = None if shape.get("group_id") is None else (label, str(shape["group_id"]))
             if kind == "mask":
                 gathered.labelled("", label, _mask(shape, gathered.room), group)
@@ -296,6 +296,8 @@ _KINDS = (
 )  # fmt: skip
 _CLASSES = ("classification", "class", "label", "category", "type")
 _DEGREES = ("CRS84", "4326", "WGS84")
+_TURN, _SAND = 360.0, 0.002
+"""What no degrees are beyond, and a size that tells them: 2 mm in metres, and 200 m in degrees."""
 
 
 def is_geojson(content: Any) -> bool:
@@ -316,14 +318,6 @@ def read_geojson(content: Any, settings: ReadSettings) -> OutlineFile:
     """
     if isinstance(content, list):
         content = {"type": "FeatureCollection", "features": content}
-    if any(name in str(content.get("crs", "")) for name in _DEGREES):
-        what = "its coordinates are degrees of latitude and longitude."
-        cure = 'Project it to metres, and give the file a member "unit": "m".'
-        raise InputError("E116", what, cure=cure)
-    if content.get("crs") and not settings.unit and "unit" not in content:
-        what = "its coordinates are those of a map, and it does not say their unit."
-        cure = "Say it with --unit m (or ft; ReadSettings.unit), or px if they are px of an image "
-        raise InputError("E116", what, cure=f"{cure}after all.")
     unit = content.get("unit", "px")
     if unit not in (*model.METRES, "px"):
         what = f"its unit {short(repr(unit))} is not known."
@@ -336,10 +330,22 @@ def read_geojson(content: Any, settings: ReadSettings) -> OutlineFile:
     for number, feature in enumerate(features):
         with entry(f"feature {number} (from 0)"):
             _add_feature(feature, f"feature {number}", gathered)
+    rings = [one for stone in gathered.stones for one in stone.rings]
+    crs = str(content.get("crs") or "")
+    degrees = any(name in crs for name in _DEGREES)
+    if crs and rings and np.abs(np.concatenate(rings)).max() <= _TURN:
+        degrees |= bool(np.median([np.ptp(one, axis=0).max() for one in rings]) < _SAND)
+    if degrees:
+        what = "its coordinates are degrees of latitude and longitude."
+        cure = 'Project it to metres, and give the file a member "unit": "m".'
+        raise InputError("E116", what, cure=cure)
+    if crs and not settings.unit and "unit" not in content:
+        what = "its coordinates are those of a map, and it does not say their unit."
+        cure = "Say it with --unit m (or ft; ReadSettings.unit), or px if they are px of an image "
+        raise InputError("E116", what, cure=f"{cure}after all.")
     unit_m = model.METRES.get(unit if "unit" in content else settings.unit or "px")
     upwards = unit_m is not None or str(content.get("frame")).startswith("wall")
     notices = gathered.notices()
-    rings = [one for stone in gathered.stones for one in stone.rings]
     # Below a picture's upper edge with y up, where y down has no pixel: nearly all, as an outline
     # may reach over the edge.
     if not upwards and rings and float(np.median(np.concatenate(rings)[:, 1])) < 0.0:
@@ -485,6 +491,8 @@ def _text(value: Any) -> str:
         value = [key for key, on in value.items() if on]
     if isinstance(value, list):
         value = value[0] if value else ""
+    if isinstance(value, float) and value.is_integer():
+        value = int(value)
     return "" if value is None else str(value)
 
 

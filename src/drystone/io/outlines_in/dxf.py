@@ -1,6 +1,7 @@
 """DXF: closed polylines, circles, ellipses and splines, in the unit of the drawing."""
 
 import io
+from codecs import BOM_UTF8
 from collections import Counter
 from collections.abc import Iterable, Iterator
 from importlib import import_module
@@ -56,7 +57,7 @@ def is_dxf(data: bytes, suffix: str) -> bool:
     """Tell DXF by its beginning or its ending."""
     if data.startswith(BINARY):
         return True
-    lines = [line.strip() for line in data[:4096].lstrip(b"\xef\xbb\xbf").split(b"\n")[:200]]
+    lines = [line.strip() for line in data[:4096].removeprefix(BOM_UTF8).splitlines()[:200]]
     return suffix == ".dxf" or (b"SECTION" in lines and lines[0] in {b"0", b"999"})
 
 
@@ -161,13 +162,15 @@ def _document(ezdxf: Any, data: bytes) -> Any:
             tagger = import_module("ezdxf.lldxf.tagger")
             drawing = import_module("ezdxf.document").Drawing
             return drawing.load(tagger.binary_tags_loader(data, errors="surrogateescape"))
+        data = data.removeprefix(BOM_UTF8)
         try:
             text = data.decode("utf-8")
         except UnicodeDecodeError:  # it is in the code page that it names (before R2007)
-            head = io.StringIO(data.decode("utf-8", "surrogateescape"))
+            head = io.StringIO(data.decode("utf-8", "surrogateescape"), newline=None)
             page = import_module("ezdxf.filemanagement").dxf_stream_info(head).encoding
             text = data.decode(page, "surrogateescape")
-        return ezdxf.read(io.StringIO(text))
+        # Like a file that is open as text: any line end is one.
+        return ezdxf.read(io.StringIO(text, newline=None))
 
 
 def _unit(document: Any, settings: ReadSettings) -> tuple[float | None, list[Notice]]:

@@ -3,7 +3,7 @@
 import math
 import re
 from collections import Counter
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Any, Literal
@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from drystone.errors import Notice
 from drystone.io.files import damaged, foreign, listed, short, too_large
 from drystone.io.labels import MAX_ID
-from drystone.io.patches import PlacedMask
+from drystone.io.patches import PlacedMask, free_numbers
 from drystone.io.read_settings import ReadSettings
 from drystone.kernels.polygons import Points
 
@@ -94,6 +94,8 @@ def number_in(text: object) -> int | None:
 
     Numbers are returned as they are, also those that no stone can have; labels only when one can.
     """
+    if isinstance(text, float) and text.is_integer():  # as tables with gaps write them
+        return int(text)
     if isinstance(text, bool) or not isinstance(text, int | str):
         return None
     if isinstance(text, int):
@@ -103,16 +105,22 @@ def number_in(text: object) -> int | None:
     return number if 0 < number <= MAX_ID else None
 
 
-def numbered(stones: Sequence[OutlinedStone]) -> tuple[Sequence[OutlinedStone], list[Notice]]:
+def numbered(
+    stones: Sequence[OutlinedStone], left: Collection[int] = ()
+) -> tuple[Sequence[OutlinedStone], list[Notice]]:
     """Give every stone an id: the file's own when all differ, else 1, 2, 3 and so on.
 
-    A file with any number of its own is not numbered anew without a notice (W119).
+    A file with any number of its own is not numbered anew without a notice (W119).  What is `left`
+    out, by its place from 1, is no stone: where stones keep their numbers it has later ones.
     """
-    own = [stone.id for stone in stones if stone.id is not None]
+    counted = [stone for place, stone in enumerate(stones, start=1) if place not in left]
+    own = [stone.id for stone in counted if stone.id is not None]
     several = sorted(number for number, count in Counter(own).items() if count > 1)
     beyond = sorted({number for number in own if not 0 < number <= MAX_ID})
-    if len(own) == len(stones) and not several and not beyond:
-        return stones, []
+    if len(own) == len(counted) and not several and not beyond:
+        free = free_numbers(set(own))
+        places = enumerate(stones, start=1)
+        return [replace(one, id=next(free)) if i in left else one for i, one in places], []
     result = [replace(stone, id=i) for i, stone in enumerate(stones, start=1)]
     if not own:
         return result, []
@@ -121,9 +129,9 @@ def numbered(stones: Sequence[OutlinedStone]) -> tuple[Sequence[OutlinedStone], 
         why.append(f"the numbers of the file are not different ({listed(several)})")
     if beyond:
         why.append(f"{listed(beyond)} cannot be the number of a stone")
-    if missing := len(stones) - len(own):
-        why.append(f"{missing} of {len(stones)} stones without a number")
-    pairs = ((stone.id, i) for i, stone in enumerate(stones, start=1))
+    if missing := len(counted) - len(own):
+        why.append(f"{missing} of {len(counted)} stones without a number")
+    pairs = ((stone.id, i) for i, stone in enumerate(stones, start=1) if i not in left)
     moved = listed(f"{own} is now {i}" for own, i in pairs if own not in (None, i))
     shown = f" ({moved})" if moved and not several else ""
     text = f"{', '.join(why)}: all are numbered in order{shown}."

@@ -1,7 +1,7 @@
 """Outlines of a file to patches of pixels, at the resolution of the file or of the settings."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
@@ -112,7 +112,8 @@ def rastered(
         placed = inside
         if inside is not None and (within := inside.shared(picture)[0]).shape != inside.mask.shape:
             placed = model.trimmed(PlacedMask(within, max(0, inside.row), max(0, inside.col)))
-            if outside := int(inside.mask.sum()) - int(within.sum()):
+            outside = int(inside.mask.sum()) - int(within.sum())
+            if outside and stone.id not in settings.skip:
                 lost.append(f"{name}: {outside} px")
         if placed is None:
             empty.append(name)
@@ -124,7 +125,7 @@ def rastered(
         notices.append(Notice("W119", f"outside the image, cut off: {listed(lost, '; ')}."))
     if empty:
         notices.append(Notice("W119", f"without a pixel, left out: {listed(empty, '; ')}."))
-    patches, overlaps = _beside_others(patches)
+    patches, overlaps = _beside_others(patches, settings.skip)
     return patches, (width, height), px_per_m, notices + overlaps
 
 
@@ -224,11 +225,18 @@ def _reach(stones: Sequence[OutlinedStone]) -> tuple[int, int]:
     return math.ceil(width), math.ceil(height)
 
 
-def _beside_others(patches: list[StonePatch]) -> tuple[list[StonePatch], list[Notice]]:
-    """Tell every patch which pixels of its box are others', and say which overlap."""
+def _beside_others(
+    patches: list[StonePatch], skip: Collection[int]
+) -> tuple[list[StonePatch], list[Notice]]:
+    """Tell every patch which pixels of its box are others', and say which overlap.
+
+    What is skipped is no other.
+    """
     beside: list[list[StonePatch]] = [[] for _ in patches]
     overlaps = []
     for i, j in meeting_boxes(patches):
+        if patches[i].id in skip or patches[j].id in skip:
+            continue
         beside[i].append(patches[j])
         beside[j].append(patches[i])
         if px := patches[i].common_px(patches[j]):

@@ -506,6 +506,7 @@ class _Place:
     rule: str = "nonzero"
     stones: bool = False
     name: str = ""
+    number: int | None = None
     group: str = ""
     depth: int = 0
     visible: bool = True
@@ -546,8 +547,8 @@ def read_svg(data: bytes, settings: ReadSettings) -> OutlineFile:
         if shape.kind == "rect" and page.size is not None and _covers(shape, page.size):
             walk.aside["rectangles over the whole page"] += 1
             continue
-        name, label = shape.place.name, layer(shape.place.group)
-        stones.append(OutlinedStone(model.number_in(name), name, (shape.area,), label=label))
+        place, label = shape.place, layer(shape.place.group)
+        stones.append(OutlinedStone(place.number, place.name, (shape.area,), label=label))
     px = page.size if page.unit_m is None else None
     size = None if px is None else (round(px[0]), round(px[1]))
     notices = model.left_aside(+walk.aside, "Only closed shapes are read.")
@@ -704,12 +705,15 @@ class _Walk:
         words = {word.lower() for word in (*own, *element.get("class", "").split())}
         # Named by a use that places it, else by itself, else by the groups around it.
         name = place.name if model.number_in(place.name) else (own[1] or own[0] or place.name)
+        # Inkscape's label is the name, but the number may be in the id beside it.
+        numbers = map(model.number_in, (place.name, own[1], own[0]))
         return replace(
             place,
             matrix=matrix,
             rule=style.get("clip-rule" if place.clipping else "fill-rule", place.rule),
             stones=place.stones or (_LAYER in words and tag(element) == "g"),
             name=name if tag(element) not in {"g", "svg"} or model.number_in(name) else place.name,
+            number=next(filter(None, numbers), place.number),
             group=(own[1] or own[0] or place.group) if tag(element) == "g" else place.group,
             depth=place.depth + 1,
             visible=_VISIBLE.get(style.get("visibility", ""), place.visible),
