@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from drystone.cli.commands import analyse
+from drystone.drawing.report import analysis
 from drystone.io.wall_image import write_labels
 from drystone.model.builder import HAND, BuilderErrors
 from drystone.statics.lp.program import EquilibriumProgram
@@ -77,7 +78,7 @@ def test_each_direction_has_its_own_lines(tmp_path, run):
     assert ranged["mu"] == pytest.approx(0.3)  # the middle of the range
 
 
-def test_loads(tower, run):
+def test_loads(tower, tmp_path, run):
     angle = np.radians(5)
     rest, tilted = 0.25 * np.cos(angle), np.sin(angle)
     for options, alphas in (
@@ -89,6 +90,8 @@ def test_loads(tower, run):
         asked = ("--json", "--associative-only", *options.split())
         report = run("analyse", tower, *asked).json()
         assert (report["alpha_left"], report["alpha_right"]) == pytest.approx(alphas)
+    run("analyse", tower, "--dead", "1@0.5,4:0,-2", "-o", tmp_path / "out")
+    assert "carries 0.375 times its own weight sideways" in shown(tmp_path / "out")["summary"]
     # One that no load brings down stands.
     ran = run("analyse", tower, "--load", "points", "--live", "1@0,3:0,-1", "--associative-only")
     assert (ran.code, "own weight         stands\n" in ran.out) == (0, True)
@@ -123,6 +126,10 @@ def test_what_stands_only_by_friction_on_upright_faces_is_named(tmp_path, run):
     ):
         assert said in ran.out
     assert named in (out / "report.html").read_text(encoding="utf-8")
+    for load in ("tilting", "height"):
+        assert run("analyse", jammed, "-o", out, "--overwrite", "--load", load).code == 5
+        report, falls = shown(out), "3 blocks, does not stand: let go, it can fall; block 3 slides"
+        assert (report["stands"], report["summary"]) == (False, f"{falls} along 1 and 2.")
     found = run("analyse", jammed, "--json").json()
     assert (found["held_by_upright_faces"], found["status_left"]) == ([3], "optimal")
     for side in ("left", "right"):
@@ -209,8 +216,11 @@ def test_tables_have_every_contact_point_and_block(tmp_path, run):
 def test_what_is_loose_without_dilatancy_is_named(tmp_path, tower, run):
     """Example 3 of Ferris and Tin-Loi fails at .3558 instead of .4037; a tall block does not."""
     rectangles = [list(row) for row in WALLS[2].rectangles]
-    said = run("analyse", written(tmp_path / "3.json", blocks_xywh=rectangles, mu=0.65)).out
+    wall, out = written(tmp_path / "3.json", blocks_xywh=rectangles, mu=0.65), tmp_path / "out"
+    said = run("analyse", wall, "-o", out).out
     assert ("alpha = 0.3558" in said, "moving then" in said) == (True, True)
+    # With dilatancy it would be block 10 or, as both sides are the same, 13.
+    assert re.search(r"weakest place: block [14]\.$", shown(out)["summary"])
     assert "moving then" not in run("analyse", tower).out
 
 
@@ -218,7 +228,12 @@ def test_cases_that_are_ranges(tower, tmp_path, run, monkeypatch):
     supports = [{"id": i, "polygon": box(x, 0, 1, 1), "fixed": True} for i, x in ((1, 0), (2, 3))]
     beam = [*supports, {"id": 3, "polygon": box(0, 1, 4, 1)}]
     bridge, out = written(tmp_path / "bridge.json", blocks=beam), tmp_path / "out"
+    drawn, save = [], analysis.save
+    monkeypatch.setattr(analysis, "save", lambda of, to: (drawn.append(of), save(of, to)))
     ran = run("analyse", bridge, "--settle", "2", "-o", out)
+    # The support is none of the weight of the wall, which is one block.
+    scales = [text.get_text() for figure in drawn for text in figure.axes[0].texts]
+    assert "0.2 \u00d7 the mean weight of a block = 20 % of the wall's weight" in scales
     for said in (
         "settlement of block 2",
         "Shifting of block 2 along 3; block 3 rocks about its right toe, on 1.",
@@ -373,6 +388,8 @@ def test_keys_that_a_block_model_does_not_have_are_named(command, settled, tmp_p
     ) in " ".join(said.split())
     said = run(command, written(tmp_path / "c.json", box(0, 0, 1, 1), rho=1)).err
     assert "does not have: 'rho'. Keys of your own: comment, meta, name, or _KEY." in said
+    said = run(command, written(tmp_path / "d.json", box(0, 0, 1, 1), px_per_m=100)).err
+    assert "does not have: 'px_per_m'. `drystone analyse --px-per-m` takes units in" in said
     assert "W307" not in run(command, settled / "blocks.json").err
 
 

@@ -14,11 +14,19 @@ from drystone.statics.flow import release
 from drystone.statics.flow.release import held_by_upright_faces
 from drystone.statics.joints import loose_blocks, slippery, with_head_friction
 from drystone.statics.limit import lateral_resistance
-from drystone.statics.loads import Loads, growing_with_height, tilting_table, weight
+from drystone.statics.loads import (
+    LoadCase,
+    Loads,
+    growing_with_height,
+    load_case,
+    tilting_table,
+    weight,
+)
 from drystone.statics.lp.extremes import Solver
 from drystone.statics.model import GROUND, Interface
 from drystone.statics.sensitivity import friction_curve, friction_sensitivity
 from drystone_lab.statics_cases import arch
+from tests.polygons import box_of
 from tests.statics import walls
 from tests.statics.walls import JAMS, between_piers, boxes, brick_model, limit_load
 from tests.strategies import repeatable
@@ -116,6 +124,20 @@ def test_the_dead_load_of_the_case_counts():
     table = tilting_table(model)
     lifted = table.dead * [[1], [1], [0]]
     assert held_by_upright_faces(model, Loads(lifted, table.live)) == ()
+
+
+@pytest.mark.parametrize(("lean_deg", "named"), [(-20, (3,)), (20, (3,)), (40, ())])
+def test_upright_is_what_gravity_makes_so(lean_deg, named):
+    """A brick between piers that lean, drawn turned, with a tilt that turns gravity along."""
+    for tilt_deg in (0, -20, 20):
+        angle = np.radians(lean_deg - tilt_deg)
+        turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+        boxed = [box_of(*row) for row in ([0, 9, 1, 3], [2, 9, 1, 3], [1, 10, 1, 1])]
+        turned = enumerate(((box @ turn).tolist() for box in boxed), 1)
+        blocks = [{"id": i, "polygon": p, "fixed": i < 3} for i, p in turned]
+        case = LoadCase("tilting", tilt_deg, (), (), None)
+        model, loads = load_case(case, model_from_json({"blocks": blocks, "mu": 0.6}))
+        assert held_by_upright_faces(model, loads) == named
 
 
 def test_friction_of_pairs_stays_on_other_faces():

@@ -325,6 +325,16 @@ def test_only_a_fixed_block_can_settle():
         point_load(tower, 7, (0, 0), (1, 0))
 
 
+def test_loads_that_do_nothing_are_refused():
+    """Nothing would limit them."""
+    tower = boxes([0, 0, 1, 2], [0, 2, 1, 2], fixed=(1,))
+    with pytest.raises(InputError, match=r"E306.*block 1 is fixed.*Name a free one: 2"):
+        point_load(tower, 1, (0, 0), (1, 0))
+    for live in (["2@0,3:0,0"], ["2@0,3:.1,0", "2@0,3:.2,0", "2@0,3:-.3,0"]):
+        with pytest.raises(InputError, match=r"E308.*0, or cancel"):
+            load_case(LoadCase("points", 0.0, (), live, None), tower)
+
+
 def test_a_force_that_solvers_would_leave_out_or_drown_in_is_refused():
     """Under one of 1e-9 mean weights nothing limited the load; not a number had no end."""
     block, dead = boxes([0, 0, 1000, 3000]), weight(boxes([0, 0, 1000, 3000]))

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable
 from dataclasses import replace
+from math import cos, radians, sin
 
 from drystone.statics.model import GROUND, Interface, RigidBlockModel
 
@@ -25,19 +26,25 @@ def with_head_friction(model: RigidBlockModel, mu: float) -> RigidBlockModel:
 
 
 def slippery(
-    interfaces: Iterable[Interface], mu: float, steep: float | None = None, grip: float = 1.0
+    interfaces: Iterable[Interface],
+    mu: float,
+    steep: float | None = None,
+    grip: float = 1.0,
+    tilt_deg: float = 0.0,
 ) -> tuple[Interface, ...]:
     """Take the friction off upright faces; the others keep the share `grip`, 0 to 1, of theirs.
 
     Upright faces grip only what was pressed between them before, which weight alone does not do. A
     face is upright when its normal goes up or down by less than `steep`, 0 to 1.  Unless given, it
     is when it stands within its friction angle of the vertical, and nearer to upright than to
-    level: there, and only there, can friction lift the block under the face.
+    level: there, and only there, can friction lift the block under the face.  `tilt_deg` turns
+    gravity, and with it the vertical, towards +x.
     """
-    changed = []
+    changed, right, rise = [], cos(radians(tilt_deg)), sin(radians(tilt_deg))
     for interface in interfaces:
         own = mu if interface.mu is None else interface.mu
-        across, up = interface.normal
+        x, y = interface.normal
+        across, up = right * x + rise * y, right * y - rise * x
         upright = abs(up) < (min(own, 1.0) * abs(across) if steep is None else steep)
         changed.append(replace(interface, mu=0.0 if upright else grip * own))
     return tuple(changed)

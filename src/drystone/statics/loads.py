@@ -21,6 +21,9 @@ LISTED = 8
 LARGEST_FORCE = 1e7
 """In mean weights, and its inverse is the smallest: solvers leave out numbers below 1e-9."""
 
+ROUNDING = 1e-12
+"""Less is left of forces that cancel, as a share of the largest."""
+
 _NUMBER = r"([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)"
 _POINT_LOAD = re.compile(rf"(\d+)@{_NUMBER},{_NUMBER}:{_NUMBER},{_NUMBER}")
 
@@ -37,6 +40,7 @@ class Loads:
     dead: Floats
     live: Floats
     name: str = "loads"
+    tilt_deg: float = 0.0  # by which weight is turned, as in :func:`weight`
 
     def __post_init__(self) -> None:
         if not np.isfinite([self.dead, self.live]).all():
@@ -86,14 +90,18 @@ def point_load(
     """Return a force on the block of an id at a point, (n, 3), to add to dead or live loads.
 
     The force is to the right and up, in weights of the model (area times density); the point is in
-    the wall frame.  A block that is not there is an InputError (E306), and so is a force or its
-    moment that is far too small or too large beside the weight of a free block (E308).
+    the wall frame.  A block that is not there or is fixed is an InputError (E306), and so is a
+    force or its moment that is far too small or too large beside the weight of a free block (E308).
     """
     row, found = _block(model, block)
+    if found.fixed:
+        what = f"block {block} is fixed, so a force on it loads nothing."
+        cure = f"Name a free one: {_listed(b for b in model.blocks if not b.fixed)}."
+        raise InputError("E306", what, where="load case", cure=cure)
     arm_x, arm_y = point[0] - found.centroid[0], point[1] - found.centroid[1]
     forces = np.zeros((len(model.blocks), 3))
     forces[row] = (*force, arm_x * force[1] - arm_y * force[0])
-    free = [other for other in model.blocks if not other.fixed] or [found]
+    free = [other for other in model.blocks if not other.fixed]
     mean, size = np.mean([(one.weight, sqrt(one.area)) for one in free], axis=0).tolist()
     most = float(np.abs(forces[row] / (mean, mean, mean * size)).max())
     if most and not 1.0 / LARGEST_FORCE <= most <= LARGEST_FORCE:
@@ -195,17 +203,18 @@ def load_case(case: LoadCase, model: RigidBlockModel) -> tuple[RigidBlockModel, 
         if not case.live:
             cure = "Add --live ID@X,Y:FX,FY once or more."
             raise UsageError("E138", "--load points needs forces.", cure=cure)
-        live = weight(model) * 0.0
-        for text in case.live:
-            live = live + point_load(model, *_parsed(text, "--live"))
+        forces = [point_load(model, *_parsed(text, "--live")) for text in case.live]
+        live = np.sum(forces, axis=0)
+        if np.abs(live).max() <= ROUNDING * np.abs(forces).max():
+            what = "the live load is nothing: its forces are 0, or cancel."
+            raise InputError("E308", what, where="load case", cure="Correct them.")
         loads = Loads(weight(model), live, f"point loads ({' '.join(case.live)})")
     else:
         loads = tilting_table(model)
     if case.tilt:
         turned = weight(model, case.tilt) - weight(model)
-        loads = replace(
-            loads, dead=loads.dead + turned, name=f"{loads.name}, tilted by {case.tilt:g}°"
-        )
+        name = f"{loads.name}, tilted by {case.tilt:g}°"
+        loads = replace(loads, dead=loads.dead + turned, name=name, tilt_deg=case.tilt)
     for text in case.dead:
         loads = replace(loads, dead=loads.dead + point_load(model, *_parsed(text, "--dead")))
     if case.dead:

@@ -3,6 +3,7 @@
 import base64
 import io
 import json
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -13,7 +14,7 @@ from PIL import Image
 import drystone as ds
 from drystone.contacts.given import model_from_json
 from drystone.drawing import view_of_assembly, view_of_result, view_of_wall, write_report
-from drystone.drawing.assembly import read_assembly
+from drystone.drawing.assembly import assembly_of_result, read_assembly
 from drystone.drawing.palette import cluster_colour
 from drystone.drawing.photo import VIEWER_PX, StonePhoto
 from drystone.drawing.report.viewer_data import PATTERNS
@@ -144,6 +145,14 @@ def test_a_plan_in_memory_and_its_files_show_the_same(tmp_path):
         assert ours == pytest.approx(theirs, abs=1e-4)
 
 
+def test_a_plan_that_can_fall_when_it_is_let_go_does_not_stand():
+    made = assembly_of_result(planned())
+    metrics = replace(made.plan.metrics, F_LR_coulomb=0.0)
+    shown = view_of_assembly(replace(made, plan=replace(made.plan, metrics=metrics)))
+    assert shown["stands"] is False
+    assert shown["summary"].endswith(" stones, does not stand: let go, it can fall.")
+
+
 def test_what_is_not_planned_is_shown_too():
     labels = np.zeros((40, 60), np.uint32)
     labels[20:, 5:25], labels[20:, 25:45], labels[:20, 15:35] = 7, 9, 12
@@ -218,9 +227,10 @@ def test_what_is_fixed_and_what_has_its_own_friction_is_said():
     blocks = [{"id": i, "polygon": wall[i].tolist(), **own[i]} for i in wall]
     owned = model_from_json({"blocks": blocks, "friction": [{"between": [2, 1], "mu": 0.4}]})
     said = view_of_wall(wall, owned, lateral_resistance(owned, mechanism=True))["assumptions"]
-    assert said[-4:-2] == ["Fixed like the ground: 1.", "Held by guides: 2 (turn)."]
-    assert "densities" in said[-2]
+    assert said[-3:-1] == ["Fixed like the ground: 1.", "Held by guides: 2 (turn)."]
     assert "of their own" in said[-1]
+    (weights,) = [one for one in said if "weight is" in one]
+    assert weights.endswith("; their weight is their area times their density.")
 
 
 @pytest.mark.parametrize("zoom", [0.5, 1])  # smaller and larger than VIEWER_PX

@@ -31,8 +31,10 @@ def judged(blocks, names=None, **more):
     (TALL, {}, True, "stands; falls when tilted by 27 degrees; weakest place: stone 1 (step 7)"),
     (TALL, {"without_dilatancy": {"left": None, "right": 0.1}}, True,
      "stands; falls when tilted by 5.7 degrees; weakest place: stone 1 (step 7)"),
+    # On the edge no load is needed, which is no fall by itself.
     (TALL, {"without_dilatancy": {"left": 0.0}}, True,
-     "stands; can fall when it is let go; weakest place: stone 1 (step 7)"),
+     "stands; falls when tilted by 0.0 degrees; weakest place: stone 1 (step 7)"),
+    (TALL, {"can_fall": True}, False, "does not stand: let go, it can fall"),
     # The place is where the wall fails to the side of the least multiplier.
     (LEANING, {"without_dilatancy": {"left": 0.2}}, True,
      "stands; falls when tilted by 11 degrees; weakest place: stone 1 (step 7)"),
@@ -41,8 +43,8 @@ def judged(blocks, names=None, **more):
     # A low one slides at alpha = mu, atan(.6) = 31 degrees.
     (LOW, {}, True, "stands; falls when tilted by 31 degrees; weakest place: the joint with the "
      "ground"),
-    (LOW, {"load_case": "growing with height"}, True, "stands; carries 0.600 times the own weight "
-     "(growing with height); weakest place: the joint with the ground"),
+    (LOW, {"load_case": "growing with height"}, True, "stands; carries 0.600 times its own "
+     "weight sideways (growing with height); weakest place: the joint with the ground"),
     (FLYING, {"names": Names()}, False, "does not stand: blocks 2 and 3 have nothing below that"),
     (FLYING[:2], {}, False, "does not stand: stone 2 has nothing below"),
     ([[0, 0, 2, 1], [1.5, 1, 4, 1]], {}, False,

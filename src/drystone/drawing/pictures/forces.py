@@ -119,6 +119,8 @@ def plot_forces(
     model: RigidBlockModel,
     forces: Floats,
     ax: Axes | None = None,
+    *,
+    weight: float | None = None,
 ) -> Axes:
     """Draw the thrust: the resultant of every interface, and how it runs from block to block.
 
@@ -126,7 +128,8 @@ def plot_forces(
     its length; half of it lies on either side of the joint.  A blue line joins the points of action
     with the centroids of the two blocks, as wide as the force is large, also to scale.  Wall and
     axes are as in :func:`plot_contacts`, the (m, 2) forces as in :func:`resultants`; ValueError
-    when they are not those of the model.
+    when they are not those of the model.  `weight` is that of the wall where the model has more, as
+    of a support that settles (:func:`drystone.statics.loads.support_settlement`).
     """
     acting, regions = resultants(model, forces), wall_regions(wall)
     largest = max((one.size for one in acting), default=0.0)
@@ -151,11 +154,13 @@ def plot_forces(
         Dots("points-of-action", seen, RESULTANT, 1.8),
     )
     ax = draw(Drawing(items, pale.box), ax)
-    _draw_scale(ax, model, per_weight, largest)
+    _draw_scale(ax, model, per_weight, largest, weight)
     return ax
 
 
-def _draw_scale(ax: Axes, model: RigidBlockModel, per_weight: float, largest: float) -> None:
+def _draw_scale(
+    ax: Axes, model: RigidBlockModel, per_weight: float, largest: float, weight: float | None
+) -> None:
     """Draw a bar for a round number of mean block weights, as long and as wide as its force."""
     weights = [block.weight for block in model.blocks if not block.fixed]
     mean = sum(weights) / len(weights)
@@ -172,7 +177,7 @@ def _draw_scale(ax: Axes, model: RigidBlockModel, per_weight: float, largest: fl
             [left, right], [0, 0], color=colour, linewidth=width, transform=below, clip_on=False,
             solid_capstyle="butt", gid=gid,
         )  # fmt: skip
-    share = 100.0 * force / sum(weights)
+    share = 100.0 * force / (weight or sum(weights))
     text = f"{count:g} \u00d7 the mean weight of a block = {share:.2g} % of the wall's weight"
     ax.annotate(
         text, (right, 0.0), (6, 0), xycoords=below, textcoords="offset points", size=7, va="center"

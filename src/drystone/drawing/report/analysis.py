@@ -42,9 +42,13 @@ def write_analysis(folder: Path, card: RangeCard, loads: Loads, per_unit_m: floa
         (folder / name).unlink(missing_ok=True)
     shapes, model = card.wall.shapes, card.wall.model
     save(plot_contacts(shapes, model).figure, folder / "contacts.png")
+    free = [not block.fixed for block in model.blocks]
+    # Of a range alpha is in weights of the wall; a support that settles is none of it.
+    weight = None if isinstance(card, Card) else float(abs(loads.live[free, 1].sum()))
     for side, end in zip(("left", "right"), card.ends.values(), strict=True):
         if end.forces is not None:
-            save(plot_forces(shapes, model, end.forces).figure, folder / f"forces_{side}.png")
+            drawn = plot_forces(shapes, model, end.forces, weight=weight)
+            save(drawn.figure, folder / f"forces_{side}.png")
         if end.mechanism is None:
             continue
         falls = end.status is LimitStatus.UNSTABLE
@@ -96,14 +100,9 @@ def _write_report(folder: Path, card: Card, loads: Loads, per_unit_m: float | No
         )
         for side, end in card.without.items()
     ]  # fmt: skip
-    # Where a fall was found no load is needed.
-    without = {
-        side: 0.0 if end.status is LimitStatus.UNSTABLE else end.alpha
-        for side, end in card.without.items()
-    }
     view = view_of_wall(
         shapes, model, resistance, title="Limit analysis of a wall", unit=unit, names=wall.names,
-        cards=more, load_case=card.load_case, without_dilatancy=without,
+        cards=more, load_case=card.load_case, verdict=card.verdict,
     )  # fmt: skip
     view["inputs"] = [list(row) for row in (*rows, ("cite", cite))]
     view["notices"] = [asdict(notice) for notice in wall.notices]

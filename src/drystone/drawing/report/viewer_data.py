@@ -9,7 +9,6 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict
 from importlib.metadata import version
 from pathlib import Path
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -85,8 +84,9 @@ def view_of_assembly(
     placed, metrics = len(plan.stone_steps), plan.metrics
     stands, summary = judge_wall(
         f"{placed} of {placed + len(plan.unused)} stones", wall, assembly.resistance,
-        without_dilatancy={"left": metrics.alpha_left_coulomb, "right": metrics.alpha_right_coulomb}
-        if metrics.F_LR_coulomb != 0.0 else {"left": 0.0, "right": 0.0},
+        without_dilatancy={"left": metrics.alpha_left_coulomb,
+                           "right": metrics.alpha_right_coulomb},
+        can_fall=metrics.F_LR_coulomb == 0.0,
     )  # fmt: skip
     cards = content.cards(plan, stands=stands)
     # The wall as ordered, and all that sticks out of it.
@@ -115,7 +115,7 @@ def view_of_wall(
     names: Names = STONES,
     cards: Iterable[content.ResultCard] = (),
     load_case: str = content.TILTING,
-    without_dilatancy: Mapping[str, float | None] = MappingProxyType({}),
+    verdict: tuple[bool | None, str] | None = None,
 ) -> ViewerData:
     """Show a wall that was not planned: its blocks have ids and no steps.
 
@@ -123,8 +123,8 @@ def view_of_wall(
     or polygons by id.  Lengths in "units" are those of a block model that says no other; `names`
     say what its blocks are called, and which of them are wedges.  `cards` are further results,
     after those of the strength, of a wall that stands.  `load_case` is the name of its loads;
-    `without_dilatancy` has load multipliers by Coulomb's law, to the "left" and "right", where they
-    are known.
+    `verdict` is that of a :class:`~drystone.drawing.words.analysis.Card`, where more is known than
+    the resistance.
 
     The view is as of a plan, with 0 ``steps``; what it was made from is for whoever knows.
     """
@@ -134,10 +134,9 @@ def view_of_wall(
     digits = part_digits(size)
     shown = ModelledWall(model, wall, names)
     count = sum(region.id not in names.wedges for region in regions)
-    stands, summary = judge_wall(
-        counted(count, names.noun), shown, resistance, load_case=load_case,
-        without_dilatancy=without_dilatancy,
-    )  # fmt: skip
+    stands, summary = verdict or judge_wall(
+        counted(count, names.noun), shown, resistance, load_case=load_case
+    )
     results = () if stands is False else (
         *content.strength_cards(resistance.value, resistance.left.alpha, resistance.right.alpha,
                                 load_case=load_case),
@@ -157,7 +156,7 @@ def view_of_wall(
         {region.id: region.centroid for region in regions}, load_case, title=title, unit=unit,
         size=rounded(size, digits), box=rounded((x0, min(y0, 0.0), x1, y1), digits), parts=parts,
         inputs=[], timings=[], settings=[],
-        assumptions=(*content.wall_assumptions(load_case), *content.model_assumptions(model)),
+        assumptions=content.wall_assumptions(model, load_case),
         summary=f"{summary}.", stands=stands,
     )  # fmt: skip
 

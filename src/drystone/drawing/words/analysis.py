@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from drystone.contacts.gaps import GapSweep
-from drystone.drawing.words.content import FALLS, TILTING, dead_load, is_horizontal, number
+from drystone.drawing.words.content import FALLS, TILTING, is_horizontal, number
 from drystone.errors import Notice, counted
 from drystone.io.walls import GivenWall, on_ground
 from drystone.model.wall import Labels
@@ -230,6 +230,17 @@ class Card(RangeCard):
         return self.resistance.stable and not self._can_fall
 
     @property
+    def verdict(self) -> tuple[bool | None, str]:
+        """Whether it stands, and in words what brings it down: see :func:`judge_wall`."""
+        wall, names = self.wall, self.wall.names
+        count = sum(block.id not in names.wedges for block in wall.model.blocks)
+        return judge_wall(
+            counted(count, names.noun), wall, self.resistance, load_case=self.load_case,
+            without_dilatancy={side: end.alpha for side, end in self.without.items()},
+            loose=self.loose, can_fall=self._can_fall,
+        )  # fmt: skip
+
+    @property
     def _can_fall(self) -> bool:
         """Whether a fall without dilatancy was found."""
         return LimitStatus.UNSTABLE in [end.status for end in self.without.values()]
@@ -438,19 +449,26 @@ def judge_wall(
     *,
     load_case: str = TILTING,
     without_dilatancy: Mapping[str, float | None] = MappingProxyType({}),
+    loose: Mapping[str, Failure] = MappingProxyType({}),
+    can_fall: bool = False,
 ) -> tuple[bool | None, str]:
     """Say whether a wall stands, and in words what brings it down; not known is None.
 
     `subject` says how large it is, such as "28 of 30 stones".
     `without_dilatancy` are load multipliers by Coulomb's law, by direction, where they are known:
-    the least of all is what the wall is told to carry.
+    the least of all is what the wall is told to carry.  `loose` and `can_fall` are those of
+    :class:`Card`: what moves then, and whether the wall falls when it is let go.
     """
     if resistance.failed:
         return None, f"{subject}; not known whether it stands: no answer could be certified"
     failures = wall.failures((resistance.left, resistance.right))
     if not resistance.stable:
-        why = wall.why_it_falls(failures).removeprefix("Falls by itself: ").rstrip(".")
-        return False, f"{subject}, {FALLS}: {why[:1].lower()}{why[1:]}"
+        return False, f"{subject}, {FALLS}: {_clause(wall.why_it_falls(failures))}"
+    if can_fall:
+        # To the side that has a load multiplier it does not fall by itself.
+        falling = [one for side, one in loose.items() if without_dilatancy.get(side) is None]
+        how = "".join(f"; {_clause(failure.words)}" for failure in falling[:1])
+        return False, f"{subject}, {FALLS}: let go, it can fall{how}"
     both = [(end.alpha, str(end.direction)) for end in (resistance.left, resistance.right)]
     both += [(alpha, direction) for direction, alpha in without_dilatancy.items()]
     known = [(alpha, direction) for alpha, direction in both if alpha is not None]
@@ -458,18 +476,22 @@ def judge_wall(
         return True, f"{subject}, stands; no load of this kind brings it down"
     alpha, direction = min(known)
     words = f"{subject}, stands; {_load(alpha, load_case)}"
-    if direction in failures:
-        words += f"; weakest place: {_weakest_place(wall, failures[direction])}"
+    if failure := loose.get(direction, failures.get(direction)):
+        words += f"; weakest place: {_weakest_place(wall, failure)}"
     return True, words
+
+
+def _clause(words: str) -> str:
+    """Return why a wall falls without the capital, the full stop and that it does."""
+    why = words.removeprefix("Falls by itself: ").rstrip(".")
+    return why[:1].lower() + why[1:]
 
 
 def _load(alpha: float, load_case: str) -> str:
     """Say what brings a wall down."""
     if load_case != TILTING:
-        of = f"the {dead_load(load_case)}" if is_horizontal(load_case) else "the live load"
+        of = "its own weight sideways" if is_horizontal(load_case) else "the live load"
         return f"carries {alpha:.3f} times {of} ({load_case})"
-    if alpha <= 0.0:
-        return "can fall when it is let go"
     angle = degrees(atan(alpha))
     return f"falls when tilted by {angle:.{0 if angle >= 10.0 else 1}f} degrees"
 

@@ -114,31 +114,28 @@ def assumptions(plan: Plan) -> tuple[str, ...]:
     )
 
 
-def wall_assumptions(load_case: str = TILTING) -> tuple[str, ...]:
-    """Return what the analysis of a wall that was not planned rests on, by the name of its loads.
+def wall_assumptions(model: RigidBlockModel, load_case: str = TILTING) -> tuple[str, ...]:
+    """Return what the analysis of a wall that was not planned rests on.
 
-    >>> wall_assumptions("point loads")[-1]
+    The last ones are what only this model has: what holds blocks, and friction of single joints.
+
+    >>> wall_assumptions(RigidBlockModel((), ()), "point loads")[-1]
     'Load case: point loads. The wall stands free on rigid ground, but for what is fixed.'
     """
-    load = LIVE_LOAD
+    load, even = LIVE_LOAD, "in proportion to their area"
     if load_case != TILTING:
         load = (
             f"Load case: {load_case}. The wall stands free on rigid ground, but for what is fixed."
         )
-    return (*ASSUMPTIONS[: ASSUMPTIONS.index(LIVE_LOAD)], load)
-
-
-def model_assumptions(model: RigidBlockModel) -> tuple[str, ...]:
-    """Return what only this model has: what holds blocks, densities, friction of single joints."""
-    said = []
+    said = [*ASSUMPTIONS[: ASSUMPTIONS.index(LIVE_LOAD)], load]
+    if len({block.density for block in model.blocks if not block.fixed}) > 1:
+        said = [one.replace(even, "their area times their density") for one in said]
     fixed = [block.id for block in model.blocks if block.fixed]
     if fixed:
         said.append(f"Fixed like the ground: {', '.join(map(str, fixed))}.")
     held = [f"{block.id} ({', '.join(block.held)})" for block in model.blocks if block.held]
     if held:
         said.append(f"Held by guides: {', '.join(held)}.")
-    if len({block.density for block in model.blocks if not block.fixed}) > 1:
-        said.append("Weights are areas times the densities of the block model.")
     if any(face.mu is not None for face in model.interfaces):
         said.append(
             "Some joints have a coefficient of friction of their own, which they keep when mu "

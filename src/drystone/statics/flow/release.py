@@ -173,7 +173,9 @@ def held_by_upright_faces(
     fall, by associated flow, in one way only.  Returned are the blocks that move then: with these
     held fast the rest stands.  None when a solver gave up.
     """
-    smooth = replace(model, interfaces=slippery(model.interfaces, model.mu))
+    tilt_deg = 0.0 if loads is None else loads.tilt_deg
+    faces = slippery(model.interfaces, model.mu, tilt_deg=tilt_deg)
+    smooth = replace(model, interfaces=faces)
     status = lateral_resistance(smooth, loads, solver=solver).left.status
     if status is not LimitStatus.UNSTABLE:
         return None if status is LimitStatus.FAILED else ()
