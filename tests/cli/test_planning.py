@@ -92,8 +92,12 @@ def test_what_is_left_over_is_said_as_it_is():
     why = "no stone that is left can be placed"
     for placed, unused, said in (
         (0, (1, 2, 9), "0 of 3 stones placed; none found a place to rest"),
-        (1, (2, 3, 9), "1 of 4 stones placed; 2 and 3 did not fit"),  # 9 is banned
-        (1, (2, 3, 4, 9), "1 of 5 stones placed; 3 others did not fit"),
+        (
+            1,
+            (2, 3, 9),
+            "1 of 4 stones placed; stones 2 and 3 found no place to rest",
+        ),  # 9 is banned
+        (1, (2, 3, 4, 9), "1 of 5 stones placed; 3 others found no place to rest"),
     ):
         plan = SimpleNamespace(stone_steps=range(placed), unused=unused, settings={"ban": [9]})
         result = SimpleNamespace(plan=plan, status="complete", message=why, shortfall="")

@@ -78,7 +78,7 @@ CASES = [
     # Walls and stones.
     ("plan {rubble} --wall 1.4mx0.4m -o {out}", 2, "E131", "--px-per-m"),
     ("plan {rubble} --wall 1mx.4m --ruler 0,0,90000,0=1m -o {out}", 2, "E138", "outside"),
-    (f"{SMALL} --wall 15x8 --scale 1", 2, "E120", "--skip-too-large"),
+    (f"{SMALL} --wall 15x8 --scale 1", 2, "E120", "Build a larger wall"),
     # Paths that are none.
     ("analyse ''", 2, "E138", "argument WALL: the path is empty. `drystone analyse --help`"),
     ("rehearse ''", 2, "E138", "argument PLAN: the path is empty"),

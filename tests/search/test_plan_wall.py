@@ -2,11 +2,13 @@
 
 import math
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from drystone import DrystoneError, Planner, Site, method_settings, plan_wall
+from drystone.drawing.words.planned import rows
 from drystone.kernels.polygons import on_grid
 from drystone.model.placement import Wedge
 from drystone.model.wall import Group, Wall
@@ -367,6 +369,8 @@ def test_walls_to_choose_are_left_out_where_there_is_no_time_or_an_interrupt(mon
     result = small_search()
     assert [one.plan for one in result.choice] == [result.plan]
     assert [notice.code for notice in result.notices] == ["W125"]
+    assert "again" not in dict(rows(result, Path()))["walls tried"]
+    assert "--budget 4 builds the same again" in dict(rows(whole, Path()))["walls tried"]
     assert result.metrics.F_LR is not None
     assert result.metrics.F_LR_coulomb is None
 

@@ -229,8 +229,9 @@ def drawing_of_wall(
                      step=steps[wedge.id])
             )  # fmt: skip
     legend = {"wedge": Surface("", (), WEDGE_COLOUR)} if wall.wedges else {}
-    size = site.width_px * units, site.height_px * units
-    return wall_drawing(items, size, "m" if site.px_per_m else "px", title, legend)
+    width, height = (side / (site.px_per_m or 1.0) for side in site.extent_px)
+    unit = "m" if site.px_per_m else "px"
+    return wall_drawing(items, (width, height), unit, title, legend)
 
 
 def step_by_id(wall: Wall) -> dict[int, int]:

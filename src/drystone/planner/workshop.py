@@ -135,7 +135,9 @@ def fitting_stones(
             f"{', '.join(map(str, too_large))} fits into the wall of "
             f"{site.width_px} x {site.height_px} working px.",
             where="--wall",
-            cure="Leave them out with --skip-too-large, or build a larger wall.",
+            cure="Leave them out with --skip-too-large, or build a larger wall."
+            if fitting
+            else "Build a larger wall: no stone fits into this one.",
         )
     largest = stones.stones[-1].id
     if largest + 2 * len(stones) >= 2**32 - 1:  # each stone may get two wedges

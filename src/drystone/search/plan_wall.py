@@ -359,7 +359,9 @@ def _notices(
             "W131",
             f"the time limit struck after {ended.walls} walls of "
             f"{first.settings.search.budget}; this is the best of them.",
-            f"--budget {ended.walls} gives the same plan again, more --time a better one.",
+            "More --time gives a better one."
+            if cut
+            else f"--budget {ended.walls} gives the same plan again, more --time a better one.",
         )
     if first.solves.failed:
         yield Notice(

@@ -88,8 +88,10 @@ def test_every_stone_wedge_frame_and_ground_is_drawn_once():
     assert drawn[f"wedge-{examples.WEDGE}"] == WEDGE_COLOUR
     plain = patches(plot_wall(examples.wall()))
     assert to_hex(plain["stone-3"].get_facecolor()) == PLAIN_COLOUR
-    empty = plot_wall(Wall.empty(Site(30, 10)), {}, title="nothing yet")
+    # The frame is that of the wall, not of its working px.
+    empty = plot_wall(Wall.empty(Site.from_source(31, 9, scale=0.1)), {}, title="nothing yet")
     assert set(patches(empty)) == {"frame", "ground"}
+    assert patches(empty)["frame"].get_path().get_extents().bounds == (0.0, 0.0, 31.0, 9.0)
     assert empty.get_title(loc="left") == "nothing yet"
     assert not empty.texts
 

@@ -68,8 +68,9 @@ def ending(result: PlanResult) -> str:
     why = result.message if unused else ""
     if why.startswith("no stone that is left"):
         left = [str(one) for one in unused if one not in result.plan.settings["ban"]]
-        named = " and ".join(left) if len(left) < 3 else f"{len(left)} others"
-        why = f"{named} did not fit" if placed else "none found a place to rest"
+        few = f"stone{'s' if len(left) > 1 else ''} {' and '.join(left)}"
+        named = few if len(left) < 3 else f"{len(left)} others"
+        why = f"{named} found no place to rest" if placed else "none found a place to rest"
     said = f"{placed} of {counted(placed + len(unused), 'stone')} placed"
     return f"{result.status}: {'; '.join(filter(None, (said, why, result.shortfall)))}"
 
@@ -78,7 +79,9 @@ def rows(result: PlanResult, folder: Path) -> list[tuple[str, str]]:
     """Return names and values, one a line."""
     plan, metrics, bound = result.plan, result.metrics, result.F_SF_bound
     placed, left = len(plan.stone_steps), len(plan.unused)
-    again = f"; --budget {plan.walls} builds the same again" if plan.walls != 1 else ""
+    # What the clock cut short no number of walls repeats.
+    cut = plan.walls == 1 or any(notice.code == "W125" for notice in result.notices)
+    again = "" if cut else f"; --budget {plan.walls} builds the same again"
     unused = f", unused: {', '.join(map(str, plan.unused))}" if left else ""
     most = (
         "1 is a full wall"
