@@ -56,11 +56,6 @@ def test_polygons_in_either_sense_with_density_and_fixed():
 UP, DOWN = (0, 1), (0, -1)
 ROOF, BEAM = [[0, 0], [4, 0], [2, 2]], [[0, 2], [4, 2], [4, 3], [0, 3]]
 ON_GROUND = (1, GROUND, [(0, 0), (2, 0)], UP)
-PAVING = square(0, 0), square(2, 0)
-ON_PAVING = [ON_GROUND, (2, GROUND, [(2, 0), (4, 0)], UP), (2, 1, [(2, 2), (2, 0)], (1, 0))]
-TIP, NOTCH = [[4, 1], [5, 4], [3, 4]], [[0, 0], [8, 0], [8, 4], [4, 1], [0, 4]]
-HALVES = [[0, 0], [4, 0], [4, 1], [0, 4]], [[4, 0], [8, 0], [8, 4], [4, 1]]
-SIDES, HELD = [(0.6, 0.8), (-0.6, 0.8)], [(-0.6, -0.8), (0.6, -0.8)]
 
 
 @pytest.mark.parametrize(
@@ -76,56 +71,6 @@ SIDES, HELD = [(0.6, 0.8), (-0.6, 0.8)], [(-0.6, -0.8), (0.6, -0.8)]
         (
             [square(0, 0), [[0.5, 2], [1.5, 2.0005], [1.5, 3], [0.5, 3]]],
             [ON_GROUND, (2, 1, [(0.5, 2)], UP)],
-        ),
-        # A corner in a notch bears on both its sides, be it of one block or of two.
-        ([TIP, NOTCH], [(2, GROUND, [(0, 0), (8, 0)], UP), *((2, 1, [(4, 1)], n) for n in HELD)]),
-        (
-            [*HALVES, TIP],
-            [
-                (1, GROUND, [(0, 0), (4, 0)], UP),
-                (2, GROUND, [(4, 0), (8, 0)], UP),
-                (2, 1, [(4, 1), (4, 0)], (1, 0)),
-                *((3, k, [(4, 1)], normal) for k, normal in enumerate(SIDES, 1)),
-            ],
-        ),
-        # On a joint corners bear on both blocks, also with each other, or from below.
-        (
-            [*PAVING, [[2, 2], [4, 3], [4, 5], [2, 5]], [[2, 2], [2, 5], [0, 5], [0, 3]]],
-            [
-                *ON_PAVING,
-                *((3, k, [(2, 2)], UP) for k in (1, 2)),
-                *((4, k, [(2, 2)], UP) for k in (1, 2)),
-                (4, 3, [(2, 2), (2, 5)], (-1, 0)),
-            ],
-        ),
-        (
-            [square(0, 2), square(2, 2), [[1, 0], [3, 0], [2, 2]]],
-            [
-                (2, 1, [(2, 4), (2, 2)], (1, 0)),
-                (3, GROUND, [(1, 0), (3, 0)], UP),
-                *((3, k, [(2, 2)], DOWN) for k in (1, 2)),
-            ],
-        ),
-        # Beds carry already: toes of two on a joint do not touch, nor does a bed the next block.
-        (
-            [*PAVING, [[2, 2], [4, 2], [4, 4], [3, 4]], [[2, 2], [1, 4], [0, 4], [0, 2]]],
-            [*ON_PAVING, (3, 2, [(2, 2), (4, 2)], UP), (4, 1, [(0, 2), (2, 2)], UP)],
-        ),
-        # Corner on corner has no normal: on the ridge of two blocks, or where they part below.
-        (
-            [[[0, 0], [2, 0], [2, 2]], [[2, 0], [4, 0], [2, 2]], [[2, 2], [3, 3], [1, 3]]],
-            ON_PAVING,
-        ),
-        ([TIP, [[0, 3], [2, 0.5], [4, 1]], [[8, 3], [4, 1], [6, 0.5]]], []),
-        # A straight line is one, whatever is below it.
-        (
-            [
-                [[0, 0.5], [3, 0.5], [4, 1], [0, 1]],
-                [[3.9, 0.5], [4.1, 0.5], [4, 1]],
-                [[5, 0.5], [8, 0.5], [8, 1], [4, 1]],
-                TIP,
-            ],
-            [(4, 1, [(4, 1)], UP), (4, 3, [(4, 1)], UP)],
         ),
         # A closed polygon with a corner that is repeated.
         ([[[0, 0], *square(0, 0), [0, 0]]], [ON_GROUND]),
@@ -288,10 +233,9 @@ def test_numbers_of_numpy_are_ids_and_numbers():
 
 def test_a_corner_at_which_an_edge_goes_straight_on_is_none():
     feet = [[1, 1], [3, 2], [5, 1], [5, 4], [1, 4]]
-    for step in (0, 1e-13, -1e-13, 1e-6, -1e-6):
+    for step in (0, 1e-13, -1e-13):
         model = model_of([[0, 0], [6, 0], [6, 1], [5, 1 + step], [1, 1], [0, 1]], feet)
-        bearing = sorted(p.tolist() for i in model.interfaces[1:] for p in i.points)
-        assert bearing == [[1, 1], [5, 1]]
+        assert [p.tolist() for i in model.interfaces[1:] for p in i.points] == [[1, 1], [5, 1]]
     # A turn of a thousandth is a corner.
     bent = [[0, 0], [6, 0], [6, 1], [3, 1.001], [0, 1]]
     assert len(polygons_from_json(one_block(polygon=bent))[1]) == 6

@@ -89,7 +89,7 @@ def test_a_plan_of_stones_whose_holes_stay_open_is_read(tmp_path):
         read_wall(path)
 
 
-def test_other_places_are_refused_and_an_image_that_is_far_too_large_is_not_decoded(tmp_path):
+def test_other_places_and_none_are_refused_nor_is_an_image_decoded_that_is_far_too_large(tmp_path):
     made = example()
     for plan in (
         swapped(made.plan, 3, 300),
@@ -99,6 +99,8 @@ def test_other_places_are_refused_and_an_image_that_is_far_too_large_is_not_deco
     ):
         with pytest.raises(InputError, match="E133"):
             read_wall(written(made, plan, tmp_path))
+    with pytest.raises(InputError, match=r"E104 .*plan.json: the plan has no stones"):
+        read_wall(written(made, replace(made.plan, steps=()), tmp_path))
     folder = written(made, made.plan, tmp_path)
     write_labels(np.ones((1001, 1000), np.uint8), next(folder.glob("wall.*")))
     with pytest.raises(InputError, match=r"E110 wall.png: .* the limit is 1 million"):

@@ -12,7 +12,13 @@ from drystone.model.wall import Group
 from drystone.poses import PoseBook
 from drystone.stabilise.memory import StabiliseMemory
 from drystone.stabilise.settings import StabiliseSettings
-from drystone.stabilise.stabilise import WedgeStock, falls_to, make_stable, wedge_under
+from drystone.stabilise.stabilise import (
+    WedgeStock,
+    falls_to,
+    make_stable,
+    rotate_to_rest,
+    wedge_under,
+)
 from tests.naive import support as naive
 from tests.naive.overlap import lowered, overlaps
 from tests.strategies import posed_on_walls, repeatable
@@ -52,6 +58,25 @@ def stairs(draw):
     row = lowered(occupied, posed.mask, col)
     assert row is not None
     return occupied, (posed, row - draw(st.sampled_from([0, 0, 0, 3])), col)
+
+
+@given(
+    scene=stairs(),
+    settings=st.sampled_from(
+        [
+            StabiliseSettings(),
+            StabiliseSettings(margin=0.1, max_turn_deg=70.0, step_deg=2.0),
+            StabiliseSettings(max_turn_deg=40.0, max_pivots=2, new_pivot_px=0, max_shift_px=5),
+            StabiliseSettings(new_pivot_px=60),
+            StabiliseSettings(max_turn_deg=5.0),
+        ]
+    ),
+)
+def test_it_turns_as_a_walk_from_angle_to_angle_does(scene, settings):
+    occupied, trial = scene
+    result = rotate_to_rest(occupied, trial, BOOK, settings)
+    expected = naive.rotated(occupied, trial, BOOK, settings)
+    assert (result.pose and (result.pose, result.pivots)) == expected
 
 
 @st.composite

@@ -1,16 +1,13 @@
 """Block models given as rectangles or polygons (DESIGN §2): a dict in, a model out."""
 
-from collections import Counter, defaultdict
+from collections import Counter
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
-from itertools import pairwise, product
-from math import inf, nan, pi, sqrt
+from math import inf, nan, sqrt
 from typing import Any
 
 import numpy as np
 import shapely
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from drystone.contacts.blocks import check_mu
 from drystone.errors import InputError
@@ -28,9 +25,6 @@ LARGEST_RATIO = 1e6
 
 STRAIGHT = 1e-12
 """A corner this far from the line between its neighbours, in sizes of the block, is none."""
-
-IN_LINE = 1e-4
-"""Edges from one corner that differ by less, in radians, run along each other or go straight on."""
 
 ASTRAY = 0.1
 """Points of an interface may lie so far from its blocks, over their size: mortar may be between."""
@@ -70,7 +64,7 @@ def model_from_json(data: Mapping[str, Any]) -> RigidBlockModel:
     -------
     RigidBlockModel
         With an interface on every common piece of two edges and a contact at a point where a
-        corner touches the inside of an edge, the bottom of a notch, or a joint in a straight line.
+        corner touches the inside of an edge.
 
     Raises
     ------
@@ -101,7 +95,6 @@ def model_from_json(data: Mapping[str, Any]) -> RigidBlockModel:
         sizes = {block.id: sqrt(block.area) for block in blocks}
         fixed = {block.id for block in blocks if block.fixed}
         found = [*_on_ground(corners, sizes, fixed), *_among_blocks(corners, sizes)]
-        found += _corners_at_corners(corners, sizes, found)
         interfaces = tuple(sorted(found, key=lambda face: (face.block, face.other)))
     model = RigidBlockModel(blocks, interfaces, read_mu(data, "mu", 0.58))
     if "mu_head" in data:
@@ -258,63 +251,6 @@ def _among_blocks(corners: dict[int, Points], sizes: dict[int, float]) -> list[I
                 raise InputError("E304", what, where="block model", cure="Move them apart.")
             found += touching_interfaces(block, corners[block], other, corners[other], tolerance)
     return found
-
-
-def _corners_at_corners(
-    corners: dict[int, Points], sizes: dict[int, float], found: Iterable[Interface]
-) -> list[Interface]:
-    """Find corners in a notch, or on a straight line that corners of other blocks make.
-
-    Blocks side by side around a point, each touching the next there, are one body, which may make
-    the notch together, or stand in it.
-    """
-    if not corners:
-        return []
-    points = np.concatenate([line[:-1] for line in corners.values()])
-    owner = np.repeat(list(corners), [len(line) - 1 for line in corners.values()])
-    reach = RELATIVE_TOLERANCE * np.array([sizes[block] for block in owner.tolist()])
-    after = np.concatenate([_edges(line)[0] for line in corners.values()])
-    before = np.concatenate([np.roll(_edges(line)[0], 1, axis=0) for line in corners.values()])
-    # Counter-clockwise from `begin` to `end` there is the block.
-    begin, end = (np.arctan2(way[:, 1], way[:, 0]) for way in (after, -before))
-    touching = defaultdict[tuple[int, int], list[Points]](list)
-    for face in found:
-        touching[face.block, face.other].append(face.points)
-
-    def beside(one: int, other: int) -> bool:
-        """Whether the blocks of two corners at one place touch there."""
-        low, high = sorted((int(owner[one]), int(owner[other])))
-        close = 2.0 * min(reach[one], reach[other])
-        ends = touching.get((high, low), [])
-        return low == high or any(np.hypot(*(p - points[one]).T).min() <= close for p in ends)
-
-    shapes = shapely.points(points)
-    near = shapely.STRtree(shapes).query(shapes, predicate="dwithin", distance=reach)
-    near = near[:, np.hypot(*(points[near[0]] - points[near[1]]).T) <= reach[near[1]]]
-    _, place = connected_components(coo_array((near[0] >= 0, near), shape=2 * [len(points)]))
-    standing = []
-    for group in np.split(np.argsort(place), np.cumsum(np.bincount(place))[:-1]):
-        around = group[np.argsort(begin[group])].tolist()
-        begins = [k for k, at in enumerate(around) if not beside(around[k - 1], at)]
-        cuts = pairwise([*begins, *(k + len(around) for k in begins[:1])])
-        bodies = [(2 * around)[k:m] for k, m in cuts]
-        for first, last in product(bodies, repeat=2):
-            # What is not of them is free: from the end of one to the beginning of the other.
-            one, two = first[0], last[-1]
-            span = (end[two] - begin[one]) % (2.0 * pi)
-            straight = bool(abs(span - pi) <= IN_LINE)
-            if not straight and (first is not last or span < pi):
-                continue
-            faces = [(one, after[one]), (two, before[two])]
-            carrying = owner[[*first, *last]]
-            tips = group[(begin[group] - begin[one]) % (2.0 * pi) >= span - IN_LINE]
-            for tip in tips[~np.isin(owner[tips], carrying)].tolist():
-                for other, (x, y) in faces[int(straight and owner[one] == owner[two]) :]:
-                    low, high = sorted((int(owner[tip]), int(owner[other])))
-                    sign = 1.0 if owner[tip] == high else -1.0
-                    normal = (sign * float(y), -sign * float(x))
-                    standing.append(Interface(high, low, points[tip, None], normal))
-    return standing
 
 
 def touching_interfaces(

@@ -134,6 +134,9 @@ def read_wall(path: Path, settings: ReadSettings | None = None) -> GivenWall:
     if model:
         return GivenWall(None, blocks=content, notices=_unknown_keys(content))
     plan = read_plan(path)
+    if not plan.steps:
+        cure = "Plan again with other stones, or a larger wall."
+        raise InputError("E104", "the plan has no stones.", where=str(path), cure=cure)
     labels = read_image_of(plan, path.parent)
     if labels is None or not shows(labels, plan):
         what = f"the {image_name(plan)} beside the plan shows other stones than the plan."

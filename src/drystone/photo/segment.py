@@ -43,8 +43,9 @@ _HIDDEN, _HIDDEN_SHARE = 4.0, 0.125
 _BITTEN = 0.05
 """What was taken for shadow within the convex hull of a stone, over the stone, that is in doubt."""
 
-_SHEET, _ON_SHEET = 0.1, 3
-"""Share of the picture of a stone that may be a sheet, and how many stones lie on one at least."""
+_SHEET, _LARGER, _ON_SHEET, _COVERED = 0.1, 3.0, 3, 0.1
+"""Share of the picture of a stone that may be a sheet, its area over that of the next, how many
+stones lie on it at least, and the share of it that they cover."""
 
 _HORN = 0.12
 """Half the thickness of ends that are no stone, over that of the stone."""
@@ -159,8 +160,7 @@ def segment(
         raise _no_stones(len(shapes(cut, EDGE)), model)
     known = stone | (labels > 0)
     hidden = _hidden(model, known, usable, found) & ~shadows
-    unlike, faint = unlike | hidden, (unlike & ~foreground) | hidden
-    causes = {SHADOW: shadows, FAINT: faint}
+    causes = {SHADOW: shadows, FAINT: (unlike & ~foreground) | hidden}
     # Stones of which a part, but not all, has the colour of shaded ground.
     body = ndimage.binary_opening(alike & (found > 0), iterations=3)
     share = np.bincount(found[body], minlength=found.max() + 1) / np.bincount(found.ravel())
@@ -172,7 +172,7 @@ def segment(
         or (shadows[region.slice] & region.image_convex).sum() > _BITTEN * region.area
     ]
     left_out = (
-        *shapes(cut, EDGE), *shapes(beside, PAPER), *lost(unlike, known, causes, least_px),
+        *shapes(cut, EDGE), *shapes(beside, PAPER), *lost(unlike | hidden, known, causes, least_px),
         *shapes(small, SMALL),
     )  # fmt: skip
     contrast = contrast_along(model.lab, found.astype(np.int32))
@@ -192,15 +192,17 @@ def _sheet_among(image: NDArray[np.uint8], found: NDArray[np.uint16], ground: Gr
     """Return the stone that is a sheet: within it stones lie apart on a ground of its colour."""
     areas = np.bincount(found.ravel())
     areas[0] = 0
-    largest = int(areas.argmax())
-    if areas[largest] < _SHEET * found.size:
+    *others, largest = np.argsort(areas).tolist()
+    if areas[largest] < max(_SHEET * found.size, _LARGER * max(areas[others])):
         return None
     try:
         within = segment(image, found == largest, ground=ground)
     except InputError:
         return None
     plain = float(np.median(within.contrast)) > PLAIN * float(within.ground.spread.max())
-    return largest if plain and within.count >= _ON_SHEET else None
+    # Spots of lichen are small beside the stone.
+    large = np.count_nonzero(within.labels) > _COVERED * areas[largest]
+    return largest if plain and large and within.count >= _ON_SHEET else None
 
 
 def _solid(mask: Mask, usable: Mask) -> Mask:
@@ -343,6 +345,8 @@ def _hidden(model: GroundModel, known: Mask, usable: Mask, found: NDArray[np.uin
     clear = usable & ~ndimage.binary_dilation(known, iterations=3 * _GRAIN_PX)
     pieces, _ = ndimage.label(ndimage.binary_opening(far & clear, iterations=_GRAIN_PX))
     large = np.bincount(pieces.ravel()) >= _HIDDEN_SHARE * np.median(np.bincount(found.ravel())[1:])
+    # Shadows are not told from stones on such ground.  They lie beside what casts them.
+    large[np.unique(pieces[ndimage.binary_dilation(~clear, iterations=2 * _GRAIN_PX)])] = False
     large[0] = False
     return np.asarray(large[pieces])
 

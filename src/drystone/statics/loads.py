@@ -203,9 +203,11 @@ def load_case(case: LoadCase, model: RigidBlockModel) -> tuple[RigidBlockModel, 
         if not case.live:
             cure = "Add --live ID@X,Y:FX,FY once or more."
             raise UsageError("E138", "--load points needs forces.", cure=cure)
-        forces = [point_load(model, *_parsed(text, "--live")) for text in case.live]
+        forces = np.array([point_load(model, *_parsed(text, "--live")) for text in case.live])
         live = np.sum(forces, axis=0)
-        if np.abs(live).max() <= ROUNDING * np.abs(forces).max():
+        arm = sqrt(np.mean([block.area for block in model.blocks]))
+        total, largest = (np.abs(one / (1.0, 1.0, arm)).max() for one in (live, forces))
+        if total <= ROUNDING * largest:
             what = "the live load is nothing: its forces are 0, or cancel."
             raise InputError("E308", what, where="load case", cure="Correct them.")
         loads = Loads(weight(model), live, f"point loads ({' '.join(case.live)})")

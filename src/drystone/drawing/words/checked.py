@@ -182,7 +182,7 @@ class Checked:
         metrics = self.report.metrics
         stands = metrics is not None and metrics.F_LR is not None
         if stands and self.plan.metrics.F_LR_coulomb == 0.0:
-            return "is valid, and the wall stands, but let go it can fall"
+            return "is valid, but let go the wall can fall"
         return "is valid, and the wall stands" if stands else "is valid"
 
     def rows(self) -> list[tuple[str, str]]:

@@ -332,8 +332,8 @@ def read_geojson(content: Any, settings: ReadSettings) -> OutlineFile:
             _add_feature(feature, f"feature {number}", gathered)
     rings = [one for stone in gathered.stones for one in stone.rings]
     crs = str(content.get("crs") or "")
-    degrees = any(name in crs for name in _DEGREES)
-    if crs and rings and np.abs(np.concatenate(rings)).max() <= _TURN:
+    degrees = any(re.search(rf"(?<!\d){name}(?!\d)", crs) for name in _DEGREES)
+    if crs and "unit" not in content and rings and np.abs(np.concatenate(rings)).max() <= _TURN:
         degrees |= bool(np.median([np.ptp(one, axis=0).max() for one in rings]) < _SAND)
     if degrees:
         what = "its coordinates are degrees of latitude and longitude."
