@@ -124,6 +124,14 @@ def test_what_is_not_built_in_the_engine(plan_copy, run, monkeypatch):
     assert run("check", plan_copy, "--physics", "--json").json()["physics"] is None
 
 
+def test_a_plan_that_can_fall_when_it_is_let_go_is_not_said_to_stand(plan_copy):
+    plan, stones = read_plan(plan_copy), read_stones(plan_copy / "rubble.png")
+    loose = replace(plan, metrics=replace(plan.metrics, F_LR_coulomb=0.0))
+    report, outlines = check_plan(plan, stones), plan_polygons(plan, stones)
+    said = [Checked(one, stones, report, outlines).verdict for one in (plan, loose)]
+    assert said == ["is valid, and the wall stands", "is valid, but let go the wall can fall"]
+
+
 def views(plan, stones):
     """What a check draws of a plan that fails."""
     checked = Checked(plan, stones, check_plan(plan, stones), plan_polygons(plan, stones))

@@ -192,6 +192,8 @@ def test_geojson_in_px_of_an_image_or_of_a_map(tmp_path):
     for unit in ("", "m"):
         with pytest.raises(InputError, match=r"E116.*degrees of lat.*Project it to metres"):
             read(tmp_path, degrees, replace(PIECES, unit=unit))
+    grains = geojson(lambda ring: np.array(ring) * 1e-5, crs="EPSG:44326", unit="m")
+    assert read(tmp_path, grains, replace(PIECES, px_per_m=1e5)).source.px_per_m == 1e5
     assert read(tmp_path, geojson(crs=crs), replace(PIECES, unit="m")).source.px_per_m
     assert compare(read(tmp_path, geojson(crs=crs), replace(PIECES, unit="px"))) == 1.0
 

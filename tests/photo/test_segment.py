@@ -90,6 +90,13 @@ def test_stones_of_nearly_the_colour_of_a_ground_that_varies_are_named_and_make_
     assert "hardly differ from the ground" in " ".join(verdict_of(found, doubts_of(found)))
 
 
+def test_shadows_on_a_ground_that_varies_are_not_named_as_stones():
+    made = photograph(replace(MORE, ground="gravel", rocks=("basalt",), count=4, shadow=0.5))
+    found = segment(pixels(made))
+    assert found.count == 4
+    assert not [one for one in found.left_out if one.why == FAINT]
+
+
 def test_photographs_repeat_and_others_differ():
     made = photograph(SMALL).jpeg
     assert photograph(SMALL).jpeg == made != photograph(replace(SMALL, seed=9)).jpeg
@@ -187,7 +194,9 @@ def test_bands_round_a_picture_are_no_ground_and_even_ground_is_no_band():
 def test_a_sheet_is_not_taken_for_a_stone_in_silence_but_a_large_stone_is_one():
     sheet = (np.abs(ROWS - 150) < 80) & (np.abs(COLS - 200) < 100), (60, 110, 180)
     stones = [disc(150 + down, 200 + right, 24) for down in (-40, 40) for right in (-60, 0, 60)]
-    for layers, reasons in (([sheet, *stones], ["may be the sheet"]), ([sheet], [])):
+    lichen = [disc(150 + down, 200 + right, 8) for down in (-40, 40) for right in (-60, 0, 60)]
+    cases = ([sheet, *stones], ["may be the sheet"]), ([sheet], []), ([sheet, *lichen], [])
+    for layers, reasons in cases:
         found = segment(drawn(*layers, ground=(170, 140, 110)))
         assert found.count == 1
         said = verdict_of(found, doubts_of(found))

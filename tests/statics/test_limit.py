@@ -333,6 +333,12 @@ def test_loads_that_do_nothing_are_refused():
     for live in (["2@0,3:0,0"], ["2@0,3:.1,0", "2@0,3:.2,0", "2@0,3:-.3,0"]):
         with pytest.raises(InputError, match=r"E308.*0, or cancel"):
             load_case(LoadCase("points", 0.0, (), live, None), tower)
+    # A couple loads in any unit.
+    for unit in (1e-14, 1.0, 1e14):
+        block, weighs = boxes([0, 0, 2 * unit, 4 * unit]), 8 * unit**2
+        pair = [f"1@{x * unit},{unit}:0,{y * weighs}" for x, y in ((0, 1), (2, -1))]
+        _, loads = load_case(LoadCase("points", 0.0, (), pair, None), block)
+        assert loads.live[0].tolist() == [0, 0, pytest.approx(-2 * unit * weighs)]
 
 
 def test_a_force_that_solvers_would_leave_out_or_drown_in_is_refused():

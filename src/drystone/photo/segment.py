@@ -25,14 +25,8 @@ _FLOOR_SHARE = 2e-4
 ROUGH = 6.0
 """What a ground varies in CIELAB, robust standard deviation, that is no cloth, wood or gravel."""
 
-PLAIN = 5.0
-"""Contrast of the usual outline over what the ground itself varies: from here on it is plain.
-
-Photographs of river beds, walls and rooms have .8 to 4.7, stones on tarpaulin, cloth, wood, gravel
-and grass 6.2 and more."""
-
 VARIED = 4.0
-"""The same from which its grain hides stones of about its colour."""
+"""The same that is more than cloth or wood: its grain hides stones of about its colour."""
 
 _GRAIN_PX = 4
 """So far the picture is blurred to see these."""
@@ -40,12 +34,21 @@ _GRAIN_PX = 4
 _HIDDEN, _HIDDEN_SHARE = 4.0, 0.125
 """Distance from the blurred ground, in standard deviations, and least share of a usual stone."""
 
+PLAIN = 5.0
+"""Contrast of the usual outline over what the ground itself varies: from here on it is plain.
+
+Photographs of river beds, walls and rooms have .8 to 4.7, stones on tarpaulin, cloth, wood, gravel
+and grass 6.2 and more."""
+
 _BITTEN = 0.05
 """What was taken for shadow within the convex hull of a stone, over the stone, that is in doubt."""
 
+_SURELY_SHEET = 0.35
+"""Share of the picture from which on a stone may be the sheet that stones lie on."""
+
 _SHEET, _LARGER, _ON_SHEET, _COVERED = 0.1, 3.0, 3, 0.1
-"""Share of the picture of a stone that may be a sheet, its area over that of the next, how many
-stones lie on it at least, and the share of it that they cover."""
+"""The same where stones are seen on it, its area over that of the next stone, how many lie on it at
+least, and the share of it that they cover."""
 
 _HORN = 0.12
 """Half the thickness of ends that are no stone, over that of the stone."""
@@ -109,7 +112,7 @@ class FoundStones:
     necks: tuple[Neck, ...]  # cut and doubtful ones
     contrast: tuple[float, ...]  # along the weakest quarter of each outline, in CIELAB
     shaded: tuple[int, ...]  # stones with a part that may be shadow
-    sheet: int | None  # the stone on which stones lie apart as on a ground
+    sheet: int | None  # the stone that may be the sheet that stones lie on
     left_out: tuple[LeftOut, ...]  # shapes that were not taken for stones
     ground: GroundModel
     shadow_level: float  # light in cast shadows over that beside them; 1 when there are none
@@ -161,13 +164,12 @@ def segment(
     known = stone | (labels > 0)
     hidden = _hidden(model, known, usable, found) & ~shadows
     causes = {SHADOW: shadows, FAINT: (unlike & ~foreground) | hidden}
-    # Stones of which a part, but not all, has the colour of shaded ground.
+    # Stones of which a part was taken for shadow; or a part, but not all, of what is left may be.
     body = ndimage.binary_opening(alike & (found > 0), iterations=3)
     share = np.bincount(found[body], minlength=found.max() + 1) / np.bincount(found.ravel())
     shaded = [
         int(region.label)
         for region in regionprops(found)
-        # A part of it was taken for shadow, or a part of what was left of it may be.
         if 0.15 < share[region.label] < 0.85
         or (shadows[region.slice] & region.image_convex).sum() > _BITTEN * region.area
     ]
@@ -189,10 +191,12 @@ def segment(
 
 
 def _sheet_among(image: NDArray[np.uint8], found: NDArray[np.uint16], ground: Ground) -> int | None:
-    """Return the stone that is a sheet: within it stones lie apart on a ground of its colour."""
+    """Return the stone that may be a sheet: it is large, or stones lie apart on its colour."""
     areas = np.bincount(found.ravel())
     areas[0] = 0
-    *others, largest = np.argsort(areas).tolist()
+    *others, largest = map(int, np.argsort(areas))
+    if areas[largest] > _SURELY_SHEET * found.size:
+        return largest
     if areas[largest] < max(_SHEET * found.size, _LARGER * max(areas[others])):
         return None
     try:

@@ -28,8 +28,6 @@ _LITTLE, _VERY_LITTLE = 0.05, 0.01
 """Shares of the photograph that are stone, least on varied ground and on any."""
 _UNEVEN = 0.85
 """How much darker the darkest place of the ground is lit: beyond, stones there get lost."""
-_SHEET = 0.35
-"""Share of the photograph from which on a stone may be the sheet that stones lie on."""
 _LEFT_OUT, _LEFT_OUT_SHARE = 2.0, 0.1
 """What was left out over what was found, and over the photograph, that is more than some stones."""
 _FAINT_SHARE = 0.25
@@ -200,11 +198,11 @@ def verdict_of(found: FoundStones, doubts: Iterable[Doubt] = ()) -> tuple[str, .
         reasons.append(
             f"the light is very uneven (the darkest ground has {percent:.0f} % of the brightest)"
         )
-    if areas.max() > _SHEET * shown or found.sheet is not None:
-        percent = 100 * float(areas.max()) / shown
+    if found.sheet is not None:
+        percent = 100 * float(areas[found.sheet - 1]) / shown
         reasons.append(
-            f"stone {int(areas.argmax()) + 1} takes up {percent:.0f} % of the photograph and may "
-            "be the sheet that the stones lie on"
+            f"stone {found.sheet} takes up {percent:.0f} % of the photograph and may be the sheet "
+            "that the stones lie on"
         )
     if stone < (_LITTLE if varies > VARIED else _VERY_LITTLE):
         reasons.append(

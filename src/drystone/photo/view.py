@@ -110,7 +110,8 @@ def without_bands(image: NDArray[np.uint8]) -> NDArray[np.bool_]:
             bands.append((turns, end, step, ndimage.label(away <= 16)[0]))
     shown = np.ones_like(within)
     for turns, end, step, alike in bands:
-        # Ground goes on between stones that lie close; a band ends along its whole side.
+        # A band ends along its whole side.  Ground goes on between stones that lie close, and is a
+        # tenth of what they cover even where they nearly touch.
         beyond = alike[np.rot90(within, turns)[:, ::step]]
         if (beyond == alike[0, 0]).mean() < 0.03:
             np.rot90(shown, turns)[:end] = False

@@ -147,7 +147,7 @@ def test_a_plan_in_memory_and_its_files_show_the_same(tmp_path):
 
 def test_a_plan_that_can_fall_when_it_is_let_go_does_not_stand():
     made = assembly_of_result(planned())
-    metrics = replace(made.plan.metrics, F_LR_coulomb=0.0, alpha_left_coulomb=None)
+    metrics = replace(made.plan.metrics, F_LR_coulomb=0.0)
     shown = view_of_assembly(replace(made, plan=replace(made.plan, metrics=metrics)))
     assert shown["stands"] is False
     assert shown["summary"].endswith(" stones, does not stand: let go, it can fall.")

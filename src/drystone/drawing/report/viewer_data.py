@@ -86,8 +86,7 @@ def view_of_assembly(
         f"{placed} of {placed + len(plan.unused)} stones", wall, assembly.resistance,
         without_dilatancy={"left": metrics.alpha_left_coulomb,
                            "right": metrics.alpha_right_coulomb},
-        can_fall=metrics.F_LR_coulomb == 0.0
-        and None in (metrics.alpha_left_coulomb, metrics.alpha_right_coulomb),
+        can_fall=metrics.F_LR_coulomb == 0.0,
     )  # fmt: skip
     cards = content.cards(plan, stands=stands)
     # The wall as ordered, and all that sticks out of it.

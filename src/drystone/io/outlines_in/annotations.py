@@ -296,8 +296,8 @@ _KINDS = (
 )  # fmt: skip
 _CLASSES = ("classification", "class", "label", "category", "type")
 _DEGREES = ("CRS84", "4326", "WGS84")
-_TURN, _SAND = 360.0, 0.002
-"""What no degrees are beyond, and a size that tells them: 2 mm in metres, and 200 m in degrees."""
+_TURN, _SMALLEST = 360.0, 0.002
+"""No degrees are larger, and no stone of a map in metres is smaller; in degrees this is 200 m."""
 
 
 def is_geojson(content: Any) -> bool:
@@ -334,7 +334,7 @@ def read_geojson(content: Any, settings: ReadSettings) -> OutlineFile:
     crs = str(content.get("crs") or "")
     degrees = any(re.search(rf"(?<!\d){name}(?!\d)", crs) for name in _DEGREES)
     if crs and "unit" not in content and rings and np.abs(np.concatenate(rings)).max() <= _TURN:
-        degrees |= bool(np.median([np.ptp(one, axis=0).max() for one in rings]) < _SAND)
+        degrees |= bool(np.median([np.ptp(one, axis=0).max() for one in rings]) < _SMALLEST)
     if degrees:
         what = "its coordinates are degrees of latitude and longitude."
         cure = 'Project it to metres, and give the file a member "unit": "m".'
