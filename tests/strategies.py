@@ -19,15 +19,23 @@ def repeatable(max_examples=60):
     return settings(max_examples=max_examples)
 
 
-def whole(pixels):
-    """The largest edge-connected piece of some pixels, holes filled, cropped."""
-    labels, count = ndimage.label(pixels)
+JOINED = np.ones((3, 3))
+"""Pixels that touch at a corner are in one piece."""
+
+
+def largest(pixels, joined=None):
+    """The largest piece of some pixels, cropped; without any, one pixel."""
+    labels, count = ndimage.label(pixels, joined)
     if count == 0:
         return np.ones((1, 1), bool)
-    sizes = np.bincount(labels.ravel())[1:]
-    mask = ndimage.binary_fill_holes(labels == int(np.argmax(sizes)) + 1)
+    mask = labels == int(np.argmax(np.bincount(labels.ravel())[1:])) + 1
     rows, cols = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
     return np.ascontiguousarray(mask[rows[0] : rows[-1] + 1, cols[0] : cols[-1] + 1])
+
+
+def whole(pixels):
+    """The largest edge-connected piece of some pixels, holes filled, cropped."""
+    return ndimage.binary_fill_holes(largest(pixels))
 
 
 @st.composite
@@ -75,11 +83,8 @@ def joined_masks(draw):
     """A piece that may be joined by corners only, as it is read: holes filled."""
     rng = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
     shape = draw(st.tuples(st.integers(1, 12), st.integers(1, 12)))
-    labels, count = ndimage.label(rng.random(shape) < draw(st.floats(0.2, 0.8)), np.ones((3, 3)))
-    if count == 0:
-        return np.ones((1, 1), bool)
-    largest = int(np.argmax(np.bincount(labels.ravel())[1:])) + 1
-    return np.asarray(ndimage.binary_fill_holes(labels == largest))
+    pixels = rng.random(shape) < draw(st.floats(0.2, 0.8))
+    return ndimage.binary_fill_holes(largest(pixels, JOINED))
 
 
 @st.composite
@@ -89,7 +94,8 @@ def holed(draw):
     inner = ndimage.binary_erosion(np.pad(mask, 1))[1:-1, 1:-1]
     seed = draw(st.integers(0, 2**32 - 1))
     share = draw(st.sampled_from([0.0, 0.1, 0.5, 0.9, 1.0]))
-    return np.asarray(mask & ~(inner & (np.random.default_rng(seed).random(mask.shape) < share)))
+    holes = inner & (np.random.default_rng(seed).random(mask.shape) < share)
+    return largest(mask & ~holes, JOINED)
 
 
 @st.composite

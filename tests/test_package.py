@@ -51,6 +51,8 @@ def test_an_argument_of_the_wrong_type_is_a_type_error_that_names_it():
         *((f"count must be a whole number, not {wrong!r}", lambda w=wrong, make=make: make(count=w))
           for wrong in (2.5, "3") for make, _ in ds.generate.GENERATORS.values()),
         ("two_sided must be true or false, not 'no'", lambda: ds.PlannerSettings(two_sided="no")),
+        *(("must be ", lambda called=called: called([[1, 1], [2]]))
+          for called in (ds.read_stones, ds.measure_labels, ds.model_from_labels)),
     ):  # fmt: skip
         with pytest.raises(TypeError, match=re.escape(text)):
             called()

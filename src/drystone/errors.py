@@ -193,7 +193,7 @@ CODES = {
     "E141": "The operating system refuses to read or write: no right to, a path too long.",
     "E142": "The memory is not large enough.",
     "E143": "`DRYSTONE_KERNELS` asks for kernels that do not exist or were not compiled.",
-    "E144": "`--from` names a plan that this search cannot begin with.",
+    "E144": "A given wall (`--from`, `begin`, `built`) is of something else than is planned.",
     "E145": "`--ban` or `--pin` (or the settings) name a stone that does not exist.",
     "E146": "There is no policy of this name; the message lists those that there are.",
     "E147": "The policy of another package cannot be loaded, failed, or chose what is not there.",
@@ -217,6 +217,7 @@ CODES = {
     "E180": "The outline of a stone or wedge crosses or touches itself.",
     "E181": "pyarrow is not installed, and it writes Parquet.",
     "E182": "trimesh is not installed, and it writes GLB.",
+    "E183": "The id, the mask or the drawn outline of a `Stone` cannot be used.",
     "E185": "ezdxf is not installed, and it writes DXF.",
     "E186": "PyAV is not installed, and it writes MP4.",
     "E187": "The wall, with a margin, is larger than the picture of the projector.",
@@ -235,7 +236,7 @@ CODES = {
     "E204": "It is not a plan, or of a version that is not read here.",
     "E205": "The plan is not as its JSON Schema says.",
     "E206": "The file cannot be written, or the disk is full.",
-    "E207": "The search cannot go on from its `checkpoint.json`.",
+    "E207": "The search cannot go on from its `checkpoint.json`, or from `state`.",
     "E210": "The stones come from a file of other contents than the plan's.",
     "E211": "Number of stones, size of the image or names of the files are not those of the plan.",
     "E212": "The plan places a stone that is not among those read.",
@@ -324,5 +325,7 @@ CODES = {
     "W306": "A block model gives the friction of blocks that do not touch.",
     "W307": "A block model has keys that mean nothing.",
     "W308": "Drawn stones lie in each other, deeper than edges bear.",
+    "W309": "An option gives a friction that no joint takes.",
+    "W310": "A force acts far from its block.",
 }
 """Every code, and what it means in one sentence; docs/errors.md has more, and the cures."""

@@ -129,6 +129,8 @@ def test_generate(kind, tmp_path, run):
         sizes = ("--count", 2, "--set", "height_px=6", "--set", "aspect=.5", "--overwrite")
         assert run("generate", kind, "-o", tmp_path / "a.png", *sizes).code == 0
         assert np.bincount(read_wall_image(tmp_path / "a.png").ravel())[1:].tolist() == [18, 18]
+        small = run("generate", kind, "-o", tmp_path / "a.png", *sizes, "--set", "height_px=4")
+        assert "W113 reading leaves out 2 stones of less than 10 px" in small.err
 
 
 def test_demo_needs_nothing_and_can_be_checked(tmp_path, run, monkeypatch):

@@ -26,7 +26,7 @@ from tests.planner.scenes import after_looks, greedy, rubble
 
 def so_far(walls, merit=1.0, **more):
     """A search after some walls, of which the best has this merit."""
-    state = None if walls == 1 else SearchState(0, None, ())
+    state = None if walls == 1 else SearchState("", 0, None, ())
     best = cast(Any, SimpleNamespace(merit=merit))
     one = replace(Progress(walls, best, cast(Any, None), (), state), **more)
     return SoFar(one, lambda: cast(PlanResult, one))
@@ -247,7 +247,7 @@ def test_an_interrupted_search_goes_on(sent, walls, search, holds, whole, tmp_pa
     assert (tmp_path / "report.html").exists()
     assert (tmp_path / CHECKPOINT).exists() == (walls > 1)
     ran = search(tmp_path, "--resume")
-    after = f"{len(part.stone_steps)} stones" if walls == 1 else f"{walls} walls"
+    after = f"{len(part.stone_steps)} stones" if walls == 1 else f"{walls} walls of {CHECKPOINT}"
     assert ran.err.startswith(f"drystone: going on after {after}\n")
     assert same(tmp_path, whole)
 
@@ -304,9 +304,10 @@ def test_a_killed_search_goes_on(search, holds, finished, whole, tmp_path, monke
     assert (read_plan(on).stopped, holds(on)) == ("interrupted", True)
     for copy in (ended, damaged):
         shutil.copytree(on, copy)
-    search(on).refused("E129")
+    search(on).refused("E129", "not empty. Add --resume to go on")
+    (on / "plan.json").write_text("{}")  # nothing of it is gone on from
     ran = search(on, "--resume")
-    assert ran.err.startswith("drystone: going on after 5 walls\n")
+    assert ran.err.startswith(f"drystone: going on after 5 walls of {CHECKPOINT}\n")
     assert same(on, whole)
     ran = search(ended, "--resume", "--budget", 1)
     assert ran.code in (0, 4)

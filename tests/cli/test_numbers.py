@@ -6,6 +6,7 @@ from argparse import ArgumentTypeError
 import pytest
 
 from drystone.cli.numbers import (
+    area,
     parse_wall,
     picture_size_px,
     refuse_outside,
@@ -50,6 +51,17 @@ NO_SIZE = ["5", "x5", "5x", "5x5x5", "ax5", "-5x5", "5kmx5km", "1e3x5", "infxinf
 def test_what_is_no_size(text, px_per_m, said):
     with pytest.raises(UsageError, match=f"{'E131' if '--px' in said else 'E127'} --wall: {said}"):
         parse_wall(text, px_per_m)
+
+
+def test_areas_are_px_or_lengths_squared():
+    square_cm = [*map(area, ("12cm2", "12 cm\N{SUPERSCRIPT TWO}", "1200mm2", "0.0012m2"))]
+    assert square_cm == [(pytest.approx(12.0), "cm2")] * 4
+    assert area("2in2") == (pytest.approx(12.9032), "cm2")
+    assert area(".5ft2") == (pytest.approx(464.5152), "cm2")
+    assert [area("300"), area("300 px")] == [(300.0, "px")] * 2
+    for text in ("", "2in", "0cm2", "-1cm2", "1,200mm2", "2in3", "2px2"):
+        with pytest.raises(ArgumentTypeError, match="such as 12cm2, 2in2 or 300"):
+            area(text)
 
 
 def test_a_ruler_is_a_length_between_two_points_and_keeps_them():

@@ -14,6 +14,7 @@ from rich.progress import Progress
 from drystone.cli import planning, progress
 from drystone.cli.planning import read_line
 from drystone.drawing.words.planned import ending, profile_rows
+from drystone.io.checkpoint import CHECKPOINT
 from drystone.io.plan_json import read_plan
 from drystone.io.wall_image import write_labels
 from drystone.model.plan import PlanMetrics
@@ -138,8 +139,12 @@ def test_json_has_the_summary_and_where_the_time_went(rubble, tmp_path, run):
 def test_a_folder_with_files_is_refused_and_not_touched(finished, rubble, tmp_path, run):
     diary, plan, asked = tmp_path / "diary.txt", tmp_path / "plan.json", ("plan", rubble, *WALL)
     diary.write_text("mine", encoding="utf-8")
-    plan.write_text("also mine", encoding="utf-8")
-    run(*asked, "-o", tmp_path).refused("E129", "--overwrite")
+    run(*asked, "-o", tmp_path).refused("E129", "not empty. Choose another")
+    for name in (CHECKPOINT, "plan.json"):
+        (tmp_path / CHECKPOINT).unlink(missing_ok=True)
+        (tmp_path / name).write_text("also mine", encoding="utf-8")
+        run(*asked, "-o", tmp_path).refused("E129", "not empty. Add --resume to go on")
+        run("demo", "-o", tmp_path).refused("E129", "not empty. Choose another")  # it cannot
     assert plan.read_text(encoding="utf-8") == "also mine"
     assert set(tmp_path.iterdir()) == {diary, plan}
     # Another seed gives another wall.

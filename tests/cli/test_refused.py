@@ -94,7 +94,7 @@ CASES = [
     (f"{FROM} --orientations sf", 2, "E144", "other orientations. Add --orientations quarter."),
     (f"{FROM} --one-sided", 2, "E144", "both sides. Add --two-sided."),
     (f"{FROM} --pieces split", 2, "E144", "stones that were read otherwise"),
-    (f"{FROM.replace('rubble', 'bricks')}", 2, "E144", "the plan is of other stones."),
+    (f"{FROM.replace('rubble', 'bricks')}", 2, "E144", ": it is of other stones. Give the stones"),
     (f"{EXACT} --from {{in}}", 3, "E202", ""),
     (f"{FROM} --resume", 2, "E138", ""),
     # Generators, markers and photographs.
@@ -103,6 +103,7 @@ CASES = [
     (f"{BRICKS} --set height_px", 2, "E135", "Known: count"),
     ("generate brick -o {out}/x.jpg", 2, "E139", ""),
     (f"{SHEET} --size 100mm", 2, "E174", "fit on A4"),
+    (f"{SHEET} --size 2inches", 2, "E174", "--size: '2inches' is not a length"),
     (f"{SHEET} --count 3", 2, "E174", ""),
     (f"{SHEET} --ids 2", 2, "E174", ""),
     ("markers -o {out}/sheet.png", 2, "E139", ""),
@@ -110,6 +111,9 @@ CASES = [
     (f"{PHOTO} --aruco 50mm --px-per-m 100", 2, "E138", ""),
     (f"{PHOTO} --marker-ids 1", 2, "E138", "--marker-ids"),
     (f"{PHOTO} --check-line 97mm", 2, "E138", "--check-line"),
+    (f"{PHOTO} --aruco A4 --check-line 97", 2, "E174", "--check-line: '97' is not a length"),
+    (f"{PHOTO} --aruco A4 --check-line 97in", 2, "E174", "--check-line: a check line of"),
+    (f"{PHOTO} --aruco 50", 2, "E174", "--aruco: '50' is not a length"),
     (f"{PHOTO} --min-area 5cm2", 2, "E131", ""),
     (f"{PHOTO} --ruler 20,30,2000,30=1.0m", 2, "E138", "the point 2000,30 is outside the picture"),
     # Analyses, craft and measures.
@@ -138,7 +142,7 @@ CASES = [
     ("rehearse {settled} --outline 1%", 2, "E138", "--outline"),
     ("rehearse {settled} --mu 0", 2, "E138", "without friction"),
     ("rehearse {settled} -o {out}/risk.bmp", 2, "E139", ""),
-    ("rehearse {finished}", 2, "E138", "only a plan on outlines"),
+    ("rehearse {finished}", 2, "E138", "on pixels again, with --geometry exact."),
     # Exports.
     ("export {finished}", 2, "E138", "--list names the formats"),
     ("export {finished} --to csv --thickness .3 -o {out}", 2, "E131", ""),

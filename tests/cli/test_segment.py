@@ -131,6 +131,13 @@ def test_what_is_no_photograph_of_stones_is_doubtful_first_and_by_its_exit_code(
     assert reason in ran.out
     said = run("segment", bed, "-o", tmp_path / "json", "--json")
     assert (said.code, said.json()["doubtful"][0]) == (5, reason)
+    # Stones that were cut out need no search.
+    clear = np.zeros((100, 100, 4), np.uint8)
+    clear[:, :, 3] = np.eye(100) * 255
+    Image.fromarray(clear).save(bed)
+    ran = run("segment", bed, "-o", tmp_path / "clear")
+    ran.refused("E175", exit_code=3)
+    assert "give the picture itself to `drystone plan`" in ran.err
 
 
 def test_what_is_in_doubt_or_left_out_has_a_place_and_a_reason(run, tmp_path):

@@ -29,7 +29,7 @@ def placed(labels, block_id):
     """The pixels of one id as a placement."""
     rows, cols = np.nonzero(labels == block_id)
     mask = (labels == block_id)[rows.min() : rows.max() + 1, cols.min() : cols.max() + 1].copy()
-    posed = PosedStone(Stone(block_id, mask), 0.0, 1.0, mask, (0.0, 0.0))
+    posed = PosedStone(Stone(block_id, [[True]]), 0.0, 1.0, mask, (0.0, 0.0))
     return Placement(posed, int(rows.min()), int(cols.min()))
 
 
@@ -48,9 +48,11 @@ def test_empty_rows_below_are_cropped_and_that_is_said():
 
 
 def test_an_empty_image_has_no_blocks():
-    picture = model_from_labels(np.zeros((4, 5), np.uint32))
-    assert (picture.model.blocks, picture.model.interfaces) == ((), ())
-    assert (picture.ground_row, picture.notices) == (4, ())
+    empty = [np.zeros(shape, np.uint32) for shape in ((4, 5), (4, 0), (0, 3))]
+    for labels in (*empty, np.ma.masked_all((4, 5), np.uint32)):
+        picture = model_from_labels(labels)
+        assert (picture.model.blocks, picture.model.interfaces) == ((), ())
+        assert (picture.ground_row, picture.notices) == (len(labels), ())
     assert pieces_apart(np.zeros((0, 0), np.uint32)) == ()
 
 

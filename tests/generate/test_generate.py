@@ -204,7 +204,8 @@ def test_polygons_are_simple_and_a_set_has_the_area_of_its_bricks(noise, convex)
         assert polygon.is_valid
         assert polygon.area >= 0.1 * 130 * 90
         assert not convex or polygon.convex_hull.area == pytest.approx(polygon.area)
-    stones = polygon_stones(PolygonSettings(noise=min(noise, 0.7)), np.random.default_rng(3))
+    settings = PolygonSettings(noise=min(noise, 0.7), convex=convex)
+    stones = polygon_stones(settings, np.random.default_rng(3))
     assert len(stones) == 28
     assert stones.total_area_px == pytest.approx(28 * 130 * 90, rel=0.005)
 

@@ -206,6 +206,17 @@ def test_geojson_in_metres_has_y_up_and_a_scale_and_some_kinds_are_no_stones(tmp
     assert stones.source.px_per_m == 400.0
     assert dict(stones.source.reading)["px_per_m"] == 400.0
     close(stones)
+    # What is read as px, or with too few of them in a metre, has stones of a few px at most.
+    metres = geojson(lambda ring: np.array(ring) / 100)
+    for small, more, cure in (
+        (metres, {}, "Say --unit m if"),
+        (metres, {"unit": "m", "px_per_m": 1.0}, "Give a larger --px-per-m"),
+        (metres, {"unit": "m", "px_per_m": 0.001}, "Give a larger --px-per-m"),
+        (content, {"skip": tuple(STONES)}, "all were skipped. Check the picture"),
+        (geojson(), {"min_area_px": 10**9}, r"(?<!Python\). )Check the picture"),
+    ):
+        with pytest.raises(InputError, match=f"E104 .*{cure}"):
+            read(tmp_path, small, replace(PIECES, **more))
     assert "1 Points, 1 features without a geometry" in stones.notices[0].message
     bare = geojson()["features"][0]["geometry"]
     assert read(tmp_path, bare).by_id(1).area_px == masks()[3].sum()

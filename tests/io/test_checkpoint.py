@@ -19,6 +19,7 @@ from drystone.io.checkpoint import CHECKPOINT, Checkpoint, read_checkpoint, writ
 from drystone.io.folder_lock import LOCK, has_files, locked
 from drystone.io.json_text import as_json, from_plain
 from drystone.model.site import Site
+from drystone.model.stone import StoneSet
 from drystone.planner.planner import Planner
 from drystone.search.anytime import searching
 from drystone.search.goal import FoundWall
@@ -158,9 +159,27 @@ def test_a_forged_search_whose_walls_do_not_stand_has_a_code(stood):
     links = tuple(replace(link, now=floating) for link in chains.links)
     forged = replace(state, chains=replace(chains, links=links, turn=0))
     settings = planner.settings.updated({"search": {"budget": 60}})
-    start = Planner(planner.workshop.stones, planner.workshop.site, settings=settings)
-    with pytest.raises(PlanError, match="E207"):
-        run_to_end(start, start=forged)
+    stones, site = planner.workshop.stones, planner.workshop.site
+    with pytest.raises(PlanError, match=r"E207 .* do not stand where they stood"):
+        run_to_end(Planner(stones, site, seed=1, settings=settings), start=forged)
+
+
+def test_a_search_goes_on_with_what_it_is_of_alone(stood):
+    state, planner = stood
+    stones, settings = planner.workshop.stones, planner.settings
+    first, *others = stones
+    for changes in (
+        {"seed": 2},
+        {"site": Site(91, 30)},
+        {"site": replace(FEW_SITE, px_per_m=100.0)},
+        {"settings": settings.updated({"ban": [first.id]})},
+        {"settings": settings.updated({"mu": 0.6})},
+        {"stones": StoneSet((replace(first, left_px=first.left_px + 1), *others))},
+        {"stones": StoneSet((replace(first, mask=first.mask[:, ::-1]), *others))},
+    ):
+        given = {"stones": stones, "site": FEW_SITE, "seed": 1, "settings": settings, **changes}
+        with pytest.raises(PlanError, match=r"E207 .* it is of other stones, another wall, other"):
+            run_to_end(Planner(**given), start=state)
 
 
 @dataclass(frozen=True)

@@ -241,9 +241,28 @@ def test_dxf_splines_that_say_they_are_closed(tmp_path):
     areas, text = curves(tmp_path, clamped)
     ends_apart = [point.xyz[:2] for point in ezdxf.math.BSpline(ROUND).approximate(500)]
     assert areas == pytest.approx([area(ends_apart)], rel=2e-3)
-    assert "end apart" in text.partition("straight line")[0]
+    assert "end apart" in text.partition("a straight line joins")[0]
     with pytest.raises(InputError, match=r"E104 .*1 open SPLINE"):
         curves(tmp_path, lambda space: fit(space, flags=0))
+
+
+def test_dxf_of_wide_lines_the_middle_is_read_and_what_is_on_paper_is_counted():
+    document, space = with_blocks()
+    box = [(0, 0), (4, 0), (4, 3), (0, 3)]
+    plain = {"close": True, "dxfattribs": {"layer": "0"}}
+    lines = [
+        space.add_lwpolyline(box, close=True, dxfattribs={"const_width": 2}),  # a DONUT
+        space.add_lwpolyline([(*box[0], 0, 1), *box[1:]], **plain),
+        space.add_polyline2d([(*point, 1, 0) for point in box], format="xyse", **plain),
+    ]
+    space.add_lwpolyline([(*point, 0, 0) for point in box], **plain)
+    document.layout().add_lwpolyline(box, close=True)
+    document.layout("Layout1").add_circle((0, 0), 1)
+    document.layout("Layout1").add_text("title")
+    found = read_dxf(text_of(document), ReadSettings())
+    text = " ".join(notice.message for notice in found.notices)
+    assert f"a width ({', '.join(line.dxf.handle for line in lines)}): the line in its" in text
+    assert "2 polylines and curves in paper space" in text
 
 
 @pytest.mark.parametrize("in_space", [False, True])

@@ -17,7 +17,7 @@ from drystone.io.images import decode
 from drystone.io.read_stones import ReadSettings, read_stones
 from drystone.io.wall_image import read_wall_image
 from drystone.io.walls import read_wall
-from tests.io.pictures import areas, codes, two_stones
+from tests.io.pictures import areas, codes, said, two_stones
 
 LIMIT = 10**6
 
@@ -242,12 +242,13 @@ def with_alpha(folder, kind, values, alpha):
 
 
 CHANNELS = ["L", "RGB", "TIFF", "lzw"]
+NO_MASK = ReadSettings(mask=False)
 
 
 @pytest.mark.parametrize("kind", [*CHANNELS, "P", "GIF", "16", "8"])
 def test_a_transparent_pixel_is_background_whatever_its_colour(tmp_path, kind):
     path = with_alpha(tmp_path, kind, GREY, ERASED)
-    stones = read_stones(path, settings=ReadSettings(mask=False))
+    stones = read_stones(path, settings=NO_MASK)
     assert areas(stones) == {255: 600}
     assert codes(stones) == ["W135"]
     assert "375 px are transparent, whatever their colour" in str(stones.notices[0])
@@ -275,6 +276,25 @@ def test_a_mask_that_lives_in_alpha(tmp_path, kind, colour, under):
         assert len(stones) == 2
         assert stones.total_area_px == ((SOFT >= 128) if alpha is SOFT else (alpha > 0)).sum()
         assert "W114" in codes(stones)
+
+
+@pytest.mark.parametrize("kind", CHANNELS)
+def test_a_photograph_that_was_cut_out_is_read_by_its_alpha(tmp_path, kind):
+    for alpha, under in product(((GREY > 0) * np.uint8(255), SOFT), (0, NOISE)):
+        path = with_alpha(tmp_path, kind, np.where(alpha > 0, NOISE, under).astype(np.uint8), alpha)
+        stones = read_stones(path)
+        assert len(stones) == 2
+        assert stones.total_area_px == (alpha >= 128).sum()
+        assert codes(stones)[-2:] == ["W135", "W114"]
+        assert "alpha was read in place" in said(stones)
+        for read in (read_wall_image, lambda path: read_stones(path, settings=NO_MASK)):
+            with pytest.raises(InputError, match="E102"):
+                read(path)
+    round_corners, fading = FULL[..., 0].copy(), np.tile(np.linspace(0, 255, 60), (40, 1))
+    round_corners[[0, 0, -1, -1], [0, -1, 0, -1]] = 0
+    for alpha in (FULL[..., 0], round_corners, fading.astype(np.uint8)):
+        with pytest.raises(InputError, match="E102"):
+            read_stones(with_alpha(tmp_path, kind, NOISE, alpha))
 
 
 def test_a_stone_of_0_on_a_transparent_ground_is_refused(tmp_path):

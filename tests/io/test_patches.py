@@ -14,7 +14,7 @@ from drystone.errors import LabelImageError
 from drystone.io.images import Picture
 from drystone.io.labels import Census, to_ids
 from drystone.io.outlines_in.model import Area, OutlinedStone, PlacedMask, filled_area, pixels_of
-from drystone.io.patches import cut, enclosed, neck_width_px
+from drystone.io.patches import StonePatch, cut, enclosed, neck_width_px
 from drystone.io.read_stones import ReadSettings, read_stones
 from drystone.kernels.ids import numbered
 from tests.io.pictures import areas, codes, discs, said
@@ -36,9 +36,20 @@ def test_cut_puts_every_pixel_where_it_was(labels):
         np.testing.assert_array_equal(others, patch.others)
         assert patch.mask[0].any()
         assert patch.mask[:, -1].any()
-        stone = patch.to_stone()
-        assert stone.left_px == patch.col
-        assert stone.bottom_px == labels.shape[0] - rows.stop
+        if len(patch.piece_areas_px) == 1:
+            stone = patch.to_stone()
+            assert stone.left_px == patch.col
+            assert stone.bottom_px == labels.shape[0] - rows.stop
+
+
+def test_a_stone_of_two_parts_that_meet_has_the_outline_of_its_pixels():
+    """Of a line that crosses itself the larger part was drawn, and the pixels are of both."""
+    y, x = np.mgrid[-9.5:10, -19.5:20]
+    parts = np.abs(y) < np.abs(x) / 2 + 0.3
+    drawn = np.array([[0, 0], [0, 20], [20, 10]])  # one of both, clockwise as y is down
+    assert StonePatch(parts, 0, 0, 1, 20, drawn=drawn).to_stone().drawn is None
+    alone = StonePatch(parts[:, :20], 0, 0, 1, 20, drawn=drawn)
+    assert alone.to_stone().drawn.tolist() == [[0, 20], [0, 0], [20, 10]]
 
 
 @given(arrays(bool, shapes))

@@ -59,12 +59,18 @@ def test_per_cents_are_of_the_page_and_its_style_says_how_a_window_shows_it():
     [
         ' display="none"', ' visibility="hidden"', ' opacity="0"', ' style="opacity:0%"',
         ' style="display : none"', ' style="visibility:collapse;fill:red"',
-        ' fill="none"', ' style="fill:none;stroke:none"', ' fill="transparent"',
+        ' fill="NONE"', ' style="fill:none;stroke:none"', ' fill="transparent"',
+        ' display="None"', ' style="fill:red;fill-opacity:0"', ' fill-opacity="0.0%"',
+        ' fill="#f000"', ' fill="#FF000000"', ' fill="RGBA(0, 0, 0, 0)"', ' fill="url(#no)"',
+        ' style="fill:rgb(0 0 0 / 0%)"', ' fill="hsla(0,0%,0%,.0)"', ' fill="url(#no) None"',
+        ' style="fill:none;stroke:red;stroke-width:0mm"', ' class="d"', ' class="e"',
+        ' fill="none" stroke="red" stroke-opacity="0"',
         ' class="a b"', ' id="c"', ' class="sheet"',
     ],
 )  # fmt: skip
 def test_what_nobody_sees_is_left_aside(hidden):
     sheet = """<style>/* rect{display:none} */ @font-face { font-family: f; src: url(f) }
+        .d {fill-opacity:0} .e {fill:none; stroke:#0000; stroke-width:9}
         .b, #c { display: none } rect.sheet {visibility:hidden !important} text{fill:none}
         g > rect:hover { cursor: pointer }</style>"""
     boxes, said = bounds(sheet + STONE.format(hidden) + RECT)
@@ -82,6 +88,10 @@ def test_the_rule_that_says_most_counts():
         (".a{fill:none;stroke:#000}", ' class="a"'),
         ("rect{display:inline}", ' display="none"'),
         ("g{width:3px}", ""),
+        ("g > rect{stroke-width:2}", ' fill-opacity=".1" stroke-width="0" fill="rgb(0,0,0)"'),
+        ("rect{fill:url(#no) red}", ""),
+        ("rect{fill:url(#one)}", ' id="one"'),
+        (".a{fill-opacity:0;stroke:rgba(0,0,0,0.1)}", ' class="a"'),
     ):
         assert bounds(f"<style>{sheet}</style>{STONE.format(stone)}")[0] == [SEEN]
 
@@ -91,12 +101,33 @@ def test_paint_and_visibility_are_inherited_and_a_fill_closes_lines_that_are_ope
     seen = STONE.format(' fill="red" visibility="visible"')
     assert bounds(group.format(RECT + seen))[0] == [SEEN]
     assert bounds(f'<g opacity="0">{seen}</g>{seen}')[0] == [SEEN]
+    some = STONE.format(' fill-opacity="1"')
+    assert bounds(f'<g fill-opacity="0">{RECT}{some}</g>')[0] == [SEEN]
     line = '<path d="M1 2h8v4h-8"{}/><polyline points="1 2 9 2 9 6 1 6"{}/>'
     assert bounds(line.format("", ""))[0] == [SEEN, SEEN]
-    stroke = ' fill="none" stroke="red"'
-    boxes, said = bounds(RECT + line.format(stroke, stroke))
+    for clear in ("none", "red", "#0000"):
+        stroke = f' fill="{clear}" stroke="red" fill-opacity="{int(clear != "red")}"'
+        boxes, said = bounds(RECT + line.format(stroke, stroke))
+        assert boxes == [SEEN]
+        assert "1 open lines in path, 1 open lines in polyline" in said
+
+
+def test_of_a_switch_the_way_without_a_condition_is_drawn_and_of_one_id_the_first():
+    other = '<g {}><rect width="5" height="5"/></g>'
+    ways = [other.format(f'{name}="de"') for name in ("systemLanguage", "requiredExtensions")]
+    boxes, said = bounds(f"<switch><title/>{''.join(ways)}{RECT}{other.format('')}</switch>")
     assert boxes == [SEEN]
-    assert "1 open lines in path, 1 open lines in polyline" in said
+    assert "3 elements that are hidden" in said
+    twice = STONE.format(' id="s"') + '<circle id="s" r="3"/>'
+    assert bounds(f'<defs>{twice}</defs><use href="#s"/>')[0] == [SEEN]
+
+
+def test_a_sheet_of_another_file_is_named_and_what_stands_beside_it_is_read():
+    boxes, said = bounds(
+        f"<style>@import url(a.css); .a{{opacity:0}}</style>{RECT}" + STONE.format(' class="a"')
+    )
+    assert boxes == [SEEN]
+    assert "a style sheet in another file was not read" in said
 
 
 LEFT, MIDDLE, RIGHT = (
@@ -199,6 +230,8 @@ ROUGH, FINE = (
         (f"<style>rect:not(.b){{visibility:hidden}}</style>{RECT}", SHEET.format("'rect:not")),
         (f"<style>[id=a]{{transform:scale(2)}}</style>{RECT}", SHEET.format("'.id=a.'")),
         (f"<style>@media print {{.h{{opacity:0}}}}</style>{RECT}", SHEET.format("'@media'")),
+        ("<style>@import 'a'; @media print {*{fill:red}}</style>", SHEET.format("'@media'")),
+        (f"<style>g > rect{{fill-opacity:0}}</style>{RECT}", SHEET.format("'g > rect'")),
         (f'<style media="print">.h{{display:none}}</style>{RECT}', SHEET.format("'media print'")),
         # Clips of other kinds, and those that take too long.
         (f'<mask id="m"/><g mask="url(#m)">{ALL}</g>', "E114 .*its mask is not read"),

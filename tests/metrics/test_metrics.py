@@ -154,6 +154,9 @@ def test_a_full_wall_and_one_whose_wedges_are_no_stones():
 def test_empty_space_around_the_wall_and_numbers_of_stones_change_nothing(labels, rows, cols):
     padded = np.pad(labels, ((rows, 9 - rows), (cols, 9 - cols)))
     assert measure_labels(padded) == measure_labels(labels)
+    # So do wedges without a pixel, and what is masked.
+    nowhere = np.ma.masked_equal(np.where(padded > 0, padded, 999), 999)
+    assert measure_labels(nowhere, wedge_ids={999}) == measure_labels(labels)
     ids, numbers = np.unique(labels, return_inverse=True)
     shift = 0 if ids[0] == 0 else 1
     renumbered = (numbers.reshape(labels.shape) + shift).astype(np.uint8)
@@ -165,9 +168,10 @@ def test_no_room_no_stones_no_ids_and_too_few_pixels_for_paths():
     for size in (*odd, (0.0, 80.0), (280.0, -1.0), (np.nan, 80.0), (280.0, np.inf), (1e9, 80.0)):
         with pytest.raises(UsageError, match="E121"):
             measure_labels(bricks(2, 2, 5, 8), wall_px=size)
-    for area in (-3, np.nan, np.inf):
-        with pytest.raises(UsageError, match=r"E138 stone_area_px: .* is not an area"):
-            measure_labels(bricks(2, 2, 5, 8), stone_area_px=area)
+    for wrong in (-3, np.nan, np.inf):
+        for name in ("stone_area_px", "lateral_resistance"):
+            with pytest.raises(UsageError, match=f"E138 {name}: it must be finite and 0 or more"):
+                measure_labels(bricks(2, 2, 5, 8), **{name: wrong})
     metrics = measure_labels(np.ones((6, 6), np.uint32))
     assert (metrics.F_AV, metrics.F_AH) == (None, None)
     with pytest.raises(LabelImageError, match=r"E104 .*30x20 px are 0"):

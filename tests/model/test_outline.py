@@ -14,7 +14,7 @@ from drystone.kernels.polygons import turn
 from drystone.model.outline import reach_px, second_moments, solid, stone_outline
 from drystone.model.stone import OUTLINE_TOLERANCE_PX, Stone
 from tests.naive import outline as naive
-from tests.strategies import blobs, holed, joined_masks, masks, repeatable
+from tests.strategies import JOINED, blobs, holed, joined_masks, largest, masks, repeatable
 
 TOLERANCE = OUTLINE_TOLERANCE_PX
 TOLERANCES = [0.0, 0.1, TOLERANCE, 1.0, 4.0]
@@ -122,7 +122,7 @@ def test_ragged_stones_have_outlines(rough):
     rng = np.random.default_rng(3)
     y, x = np.mgrid[-1:1:120j, -1:1:160j]
     noise = ndimage.gaussian_filter(rng.normal(size=x.shape), rough)
-    mask = solid(0.7 - np.hypot(x, y) + 0.2 * noise / noise.std() > 0.0)
+    mask = largest(solid(0.7 - np.hypot(x, y) + 0.2 * noise / noise.std() > 0.0), JOINED)
     outline = stone_outline(mask, TOLERANCE)
     check(outline, mask)
     edges = naive.rim(mask)

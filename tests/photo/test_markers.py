@@ -112,6 +112,8 @@ def test_a_sheet_has_its_markers_in_the_corners_of_the_page():
     places = sheet_positions_m("A4", 0.05)
     expected = [[0.015, 0.015], [0.145, 0.015], [0.145, 0.232], [0.015, 0.232]]
     assert places == pytest.approx(np.array(expected))
+    for size_m, text in ((0.05, "5cm"), (0.0508, "2in"), (0.06096, ".2 ft")):
+        assert parse_layout(f"letter:{text}").size_m == pytest.approx(size_m)
     layout = parse_layout("a4:5cm")
     assert (layout.page, layout.ids) == ("A4", (0, 1, 2, 3))
     assert layout.corners_m(2)[2] == pytest.approx([0.195, 0.282])

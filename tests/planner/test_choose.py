@@ -16,6 +16,7 @@ from drystone.model.placement import Placement
 from drystone.model.wall import Group, Wall
 from drystone.planner.build import Build, Candidate, Proposal
 from drystone.planner.choose import better_side, choose_by_policy, choose_by_score
+from drystone.planner.events import Stopped
 from drystone.planner.offers import holds, offer, support_px
 from drystone.poses import PoseBook
 from drystone.selection.algorithm2 import SelectionSettings
@@ -202,8 +203,8 @@ def test_only_walls_that_stand_are_offered():
             name="last", build=build, settings=PolicySettings(), rng=rng,
         )  # fmt: skip
 
-    assert choose(kept) is made[4]
-    assert choose(kept[1:4]) is None
+    assert choose(kept) == (made[4], False)
+    assert choose(kept[1:4]) == (None, False)
     assert seen == [[made[0].stone_id, made[4].stone_id]]
 
 
@@ -299,10 +300,11 @@ def test_others_come_where_no_pinned_stone_can(installed):
     assert len(scenes.ids(by_mine({"pin": [6, 4]}))) >= 4
     assert offered(seen[0]) == {4, 6}
     assert offered(next(offers for offers in seen if len(offered(offers)) > 2)) == set(range(1, 9))
-    # One that takes nothing at all ends the wall.
+    # One that takes nothing at all ends the wall, which says so.
     installed(lambda _: None)
     planner = by_mine({})
-    assert (scenes.ids(planner), planner.stopped.reason) == ([], "failures")
+    why = Stopped("failures", "the policy took none of the places it was offered")
+    assert (scenes.ids(planner), planner.stopped) == ([], why)
 
 
 @pytest.mark.parametrize("rule", ["random", "paper", ""])

@@ -154,6 +154,16 @@ def test_a_stone_alone_is_measured_to_less_than_half_a_pixel_and_to_a_degree(sca
         assert turns(place.angle_deg, true[2]) < 1.0
 
 
+@pytest.mark.parametrize(("aside", "up"), [(-1, 0), (1, 0), (0, 1), (0, -1)])
+def test_a_stone_that_the_edge_of_the_picture_cuts_is_measured_by_what_is_in_it(aside, up):
+    for stone, out in zip(rubble(), (0.1, 0.2, 0.3), strict=False):
+        width, height = np.ptp(stone.outline, axis=0) * (0.5 - out)
+        x, y = 50 + aside * (50 - width), 50 + up * (50 - height)
+        place = fitted(shown(stone.outline, (x, y, 4.0), (100, 100)), stone.outline, 1.0, 0.0)
+        assert np.hypot(place.x_px - x, place.y_px - y) < 0.4
+        assert turns(place.angle_deg, 4.0) < 1.0
+
+
 def about_its_centroid(*corners):
     return np.array(corners) - shapely.get_coordinates(shapely.Polygon(corners).centroid)
 
@@ -215,22 +225,33 @@ def test_deviations_are_measured_less_planned(settings):
         assert now[1] < y + 0.5
 
 
+def of_wedges(one):
+    """Ids of the wedges, and of the stones above them."""
+    return {wedge.id: wedge.under for wedge in one.build.wall.wedges}
+
+
 def test_wedges_in_a_picture_are_no_stones():
     stones = scenes.few_stones()
     site = Site.from_source(84.0, 34.0, SCALE)
     one = scenes.finish(Planner(stones, site, seed=3, settings=scenes.greedy(scenes.WITH_WEDGES)))
-    assert one.build.wall.wedges
     before = one.build
+    assert of_wedges(one) == {6: 4, 7: 5}
     found = one.observe(one.build.wall.labels)
     assert set(found.poses) == {placement.stone_id for placement in before.wall.placements}
     assert one.build is before
     # A pixel of the source to the right, with all that it lies on: wedges are cut again.
     found = one.observe({i: MeasuredPose(x + 1.0, y, a) for i, (x, y, a) in planned(one).items()})
     assert found.stands
-    assert one.build.wall.wedges
     assert max(turn.moved_px for turn in found.deviations) < 2.0
-    numbers = [wedge.id for wedge in one.build.wall.wedges]
-    assert numbers == list(range(min(numbers), min(numbers) + len(numbers)))
+    assert of_wedges(one) == {6: 4, 7: 5}
+    # Stones fall, one after the other, and wedges are left where they were.  Their ids mean no
+    # stone, and nothing else: what stays keeps its id, and what is new gets one that none had.
+    for gone, left, then in ((5, {6: 4}, {6: 4, 8: 2}), (4, {8: 2}, {8: 2})):
+        seen = np.where(one.build.wall.labels == gone, 0, one.build.wall.labels)
+        seen[0, :2] = 6, 7
+        assert [one.observe(seen).free for _ in range(2)] == [(gone,), ()]
+        assert of_wedges(one) == left
+        assert of_wedges(scenes.finish(one, 1)) == then
 
 
 WRONG = "0.5", True, np.True_, None, 10**400

@@ -9,8 +9,10 @@ import pytest
 
 from drystone import DrystoneError, Planner, Site, method_settings, plan_wall
 from drystone.drawing.words.planned import rows
+from drystone.errors import UsageError
 from drystone.kernels.polygons import on_grid
 from drystone.model.placement import Wedge
+from drystone.model.stone import StoneSet
 from drystone.model.wall import Group, Wall
 from drystone.model.wedge_shape import WedgeShape
 from drystone.planner.deadline import Deadline, TimeIsUp
@@ -72,6 +74,41 @@ def test_of_a_built_wall_that_does_not_stand_nothing_better_is_looked_for():
     assert [notice.code for notice in results[0].notices] == []
     (told,) = results[1].notices
     assert (told.code, "after stones 2;" in told.message) == ("W126", True)
+
+
+@scenes.GEOMETRIES
+def test_a_wall_of_something_else_is_refused_where_it_cannot_be_gone_on_with(settings):
+    """What is built must be the same; outlines to begin with may be of another wall."""
+    stones = scenes.blocks({1: (20, 10), 2: (24, 12), 3: (30, 10), 4: (16, 10)})
+    asked = {"stones": stones, "width": 60.0, "height": 20.0, "scale": 1.0, "settings": settings,
+             "budget": 1, "coulomb": False}  # fmt: skip
+    plan, whole = (made := plan_wall(**asked)).plan, made.wall
+    first, *others = stones
+    fewer = StoneSet(tuple(s for s in stones if s.id != whole.placements[-1].stone_id))
+    own, other = ("exact", "raster") if whole.outlines else ("raster", "exact")
+    exact = own == "exact"
+    for changes, said, may_begin in (
+        ({"stones": StoneSet((replace(first, left_px=9), *others))}, "other stones", False),
+        ({"stones": StoneSet((replace(first, mask=np.ones((9, 21), bool)), *others))},
+         "other stones", False),
+        ({"stones": fewer}, "other stones", True),
+        ({"width": 58.0, "height": 30.0}, "another wall (60x20 px, not 58x30)", exact),
+        ({"scale": 0.5}, "another resolution. Add --scale 1.", exact),
+        ({"settings": settings.updated({"geometry": other})}, f"--geometry {own}", False),
+        ({"settings": settings.updated({"two_sided": False})}, "both sides. Add --two", False),
+    ):  # fmt: skip
+        given = asked | changes
+        with pytest.raises(UsageError, match=r"^E144 wall: it is of ") as refused:
+            plan_wall(**given, built=whole)
+        assert said in str(refused.value)
+        if may_begin:
+            heights = plan.course_heights_px
+            begun = plan_wall(**given, begin=whole, course_heights_px=heights)
+            scenes.proven(begun, given["stones"])
+            assert begun.plan.steps[0].course_height == plan.steps[0].course_height
+        else:
+            with pytest.raises(UsageError, match=r"^E144 begin: it is of "):
+                plan_wall(**given, begin=whole)
 
 
 FEW = {"search": {"budget": 4, "passes": 3, "chains": 2, "share_every": 2}}

@@ -40,7 +40,7 @@ from tests.polygons import moved
 from tests.settle.piles import WIDTH, piles
 from tests.strategies import repeatable
 
-TRAPEZE = Stone(7, np.tri(9, 16, 5, dtype=bool))
+TRAPEZE = Stone(7, np.tri(9, 14, 5, dtype=bool))
 
 
 @pytest.mark.parametrize(("angle_deg", "tolerance_px"), [(0.0, 0.1), (90.0, 0.35), (-33.0, 2.0)])

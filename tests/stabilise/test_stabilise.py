@@ -25,7 +25,7 @@ from tests.strategies import posed_on_walls, repeatable
 
 BOOK = PoseBook()
 BAR = BOOK.pose(Stone(1, np.ones((6, 30), bool)), 0.0)
-BLOCK = BOOK.pose(Stone(2, np.tril(np.ones((14, 18), bool))), 0.0)
+BLOCK = BOOK.pose(Stone(2, np.tril(np.ones((14, 14), bool))), 0.0)
 _Y, _X = np.mgrid[-5:6, -13:14]
 PEBBLE = BOOK.pose(Stone(3, (_X / 13.5) ** 2 + (_Y / 5.5) ** 2 <= 1), 0.0)
 

@@ -295,11 +295,12 @@ def test_wall_in_the_air_does_not_stand(either):
 
 
 def test_empty_plan_is_checked_and_one_of_no_image_is_refused(either):
-    empty = PlanMetrics(0.0, None, None, None, 0.0, 0.0, None, None, 0.0)
     ids = tuple(stone.id for stone in either.stones)
-    plan = replace(either.plan, steps=(), unused=ids, metrics=empty)
-    report = check_plan(plan, either.stones)
-    assert (report.ok, report.area_error_at) == (True, None)
+    for level, found in ((None, []), (0.0, []), (0.1, ["E234"])):  # earlier plans said 0
+        empty = PlanMetrics(0.0, None, None, None, level, level and 0.0, None, None, 0.0)
+        plan = replace(either.plan, steps=(), unused=ids, metrics=empty)
+        report = check_plan(plan, either.stones)
+        assert ([*codes(report)], report.area_error_at) == (found, None)
     for size in (1e12, 0.1):
         with pytest.raises(PlanError, match="E215"):
             check_plan(replace(plan, width=size), either.stones)

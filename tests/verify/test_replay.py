@@ -94,10 +94,17 @@ def test_wall_that_cannot_be_built_is_refused_with_the_step():
     made = exact_example()
     others = StoneSet(tuple(stone for stone in made.stones if stone.id != SLAB))
     unknown = replace(made.plan, settings={**made.plan.settings, "wings": 2})
-    with pytest.raises(PlanError, match="E212 step 3: "):
-        rebuild_wall(made.plan, others)
-    with pytest.raises(PlanError, match="E217 settings: "):
-        rebuild_wall(unknown, made.stones)
+    for said, plan, given_stones in (
+        ("E212 step 3: ", made.plan, others),
+        ("E217 settings: ", unknown, made.stones),
+        # Of plans that were edited the stones are the right ones.
+        ("E213 step 2: ", changed(made.plan, 5, stone=3), made.stones),
+        ("E214 step 2: ", replace(made.plan, steps=made.plan.steps[1:]), made.stones),
+        ("E220 step 2: ", moved(made.plan, 5, 500, 0), made.stones),
+        ("E221 step 2: ", moved(made.plan, 5, -25, 0), made.stones),
+    ):
+        with pytest.raises(PlanError, match=f"{said}.* Correct the plan, or give its own stones"):
+            rebuild_wall(plan, given_stones)
 
 
 def test_the_outline_decides_whether_a_stone_is_in_the_wall():

@@ -23,8 +23,11 @@ from drystone.io.plan_folder import WRITTEN as WITH_PLAN
 from drystone.io.plan_folder import write_plan_folder
 from drystone.io.plan_json import read_plan
 from drystone.model.plan import Plan
+from drystone.model.site import Site
+from drystone.model.wall import Wall
 from drystone.planner.events import UNFINISHED, Stopped
 from drystone.planner.planner import Planner
+from drystone.planner.replay import differences, refuse
 from drystone.search.plan_result import PlanResult, result_of
 from drystone.search.plan_wall import SoFar
 from drystone.search.state import SearchState
@@ -148,7 +151,7 @@ class Earlier:
     def tell(self) -> None:
         """Say what is gone on with."""
         if self.state is not None:
-            note(f"going on after {self.state.reached.walls} walls")
+            note(f"going on after {self.state.reached.walls} walls of {CHECKPOINT}")
         elif self.plan is not None:
             note(f"going on after {len(self.plan.stone_steps)} stones")
         elif self.begun:
@@ -184,22 +187,23 @@ def earlier_run(request: PlanRequest) -> Earlier:
         return Earlier()
     folder, asked = request.folder, made_of(request)
     path = folder / "plan.json"
-    plan = read_plan(path) if path.exists() else None
-    different = [] if plan is None else _differences(plan, asked, request.options.method)
     ids = [stone.id for stone in request.stones]
     try:
         kept = read_checkpoint(folder, ids, request.settings.search)
     except PlanError as error:
-        cure = "The partial plan is gone on from." if plan is not None else "Planning begins anew."
+        cure = "The partial plan is gone on from." if path.exists() else "Planning begins anew."
         note(Notice("W129", f"{error.where}: {error.what}", cure))
         kept = None
+    if kept is not None:
+        _refuse([n for n in asked if kept.made_of.get(n) != asked[n]], folder / CHECKPOINT)
+        if kept.state is not None:
+            return Earlier(state=kept.state, begun=True)
+    plan = read_plan(path) if path.exists() else None
+    different = [] if plan is None else _differences(plan, asked, request.options.method)
     if kept is None:
         if plan is not None:
             _refuse(different, path)
         return Earlier(plan, begun=(folder / CHECKPOINT).exists() or plan is not None)
-    _refuse([n for n in asked if kept.made_of.get(n) != asked[n]], folder / CHECKPOINT)
-    if kept.state is not None:
-        return Earlier(state=kept.state, begun=True)
     # Beside a checkpoint a finished plan is an earlier one, or was not written to the end.
     partial = plan is not None and not different and plan.stopped in UNFINISHED
     return Earlier(plan if partial else None, begun=True)
@@ -248,37 +252,24 @@ def tell_finished(plan: Plan, request: PlanRequest) -> str:
     return result.status
 
 
-def plan_to_begin_with(request: PlanRequest) -> Plan | None:
-    """Return the plan of `--from`; None when there is none.
+def plan_to_begin_with(request: PlanRequest, site: Site) -> tuple[Plan | None, Wall | None]:
+    """Return the plan of `--from` and its wall; None when there is none.
 
-    E144: it is of other stones, for another wall, made at another resolution or geometry, or in
-    poses or from a side that the settings do not allow.
+    E144: it is of other stones, or in poses that the settings do not allow, or its wall is of
+    something else (:func:`~drystone.planner.replay.differences`).
     """
     begin = request.options.begin
     if begin is None:
-        return None
-    plan = read_plan(Path(begin))
-    source, wall, settings = request.stones.source, request.wall, request.settings
-    size, of_plan = _wall_px(plan, plan.px_per_m), plan.settings
-    geometry = str(of_plan.get("geometry", "raster"))
-    orientations = of_plan.get("orientations", settings.orientations)
-    alike = plan.source.get("reading", {}) == dict(source.reading)
-    turned, scale = orientations == settings.orientations, f"--scale {plan.working_scale:g}"
-    sized = f"another wall ({size[0]:g}x{size[1]:g} px, not {wall[0]:g}x{wall[1]:g})"
-    checks = [  # whether it is the same, what it is else, and the option that makes it the same
-        (plan.source["sha256"] == source.sha256, "other stones", ""),
-        (alike, "stones that were read otherwise", ""),
-        (_same_wall(size, wall), sized, ""),
-        (plan.working_scale == request.scale, "another resolution", scale),
-        (geometry == settings.geometry, "another geometry", f"--geometry {geometry}"),
-        (turned, "other orientations", f"--orientations {orientations}"),
-        (settings.two_sided or not of_plan.get("two_sided", False), "both sides", "--two-sided"),
-    ]
-    different = {name: option for same, name, option in checks if not same}
-    if different:
-        cure = "Give the stones and the wall that the plan was made for, or leave --from out."
-        if all(different.values()):
-            cure = f"Add {' '.join(different.values())}."
-        what = f"the plan is of {', '.join(different)}."
-        raise UsageError("E144", what, where=str(Path(begin)), cure=cure)
-    return plan
+        return None, None
+    plan, stones, settings = read_plan(Path(begin)), request.stones, request.settings
+    if plan.source["sha256"] != stones.source.sha256:
+        refuse({"other stones": ""}, begin)
+    if plan.source.get("reading", {}) != dict(stones.source.reading):
+        refuse({"stones that were read otherwise": ""}, begin)
+    wall = rebuild_wall(plan, stones)
+    different = differences(wall, stones, site, settings)
+    orientations = plan.settings.get("orientations", settings.orientations)
+    if orientations != settings.orientations:
+        different["other orientations"] = f"--orientations {orientations}"
+    refuse(different, begin)
+    return plan, wall

@@ -20,7 +20,7 @@ _LENGTH = r"(\d+(?:[.,]\d*)?|[.,]\d+)"
 _SIDE = rf"{_LENGTH}(px|mm|cm|m|ft|in|)"
 _WALL = re.compile(f"{_SIDE}[xX\N{MULTIPLICATION SIGN}]{_SIDE}")
 _THOUSANDS = re.compile(r"[1-9]\d{0,2},\d{3}")
-_AREA = re.compile(r"(\d+(?:\.\d*)?|\.\d+)\s*(cm2|px)?")
+_AREA = re.compile(r"(\d+(?:\.\d*)?|\.\d+)\s*(?:(mm|cm|m|ft|in)[2\N{SUPERSCRIPT TWO}]|px|)")
 _NUMBER = r"\s*(-?\d+(?:\.\d*)?|-?\.\d+)\s*"
 _RULER = re.compile(rf"{_NUMBER},{_NUMBER},{_NUMBER},{_NUMBER}=\s*{_LENGTH}(m|cm|mm|ft|in)")
 _PICTURES = {".png", ".tif", ".tiff", ".bmp", ".gif", ".jpg", ".jpeg", ".npy"}
@@ -76,19 +76,20 @@ def share(text: str) -> float:
 
 
 def area(text: str) -> tuple[float, str]:
-    """Read an area: value and unit, "cm2" or "px"."""
+    """Read an area: value and unit, "px", or "cm2" for all that are lengths squared."""
     found = _AREA.fullmatch(text.strip())
     if found is None or not 0 < float(found[1]) < math.inf:
-        raise argparse.ArgumentTypeError(f"{text!r} is not an area such as 12cm2 or 300 (px)")
-    return float(found[1]), found[2] or "px"
+        raise argparse.ArgumentTypeError(f"{text!r} is not an area such as 12cm2, 2in2 or 300 (px)")
+    value, unit = float(found[1]), found[2]
+    return (value * (100.0 * METRES[unit]) ** 2, "cm2") if unit else (value, "px")
 
 
 def refuse_cm2(
     area: tuple[float, str] | None, scale: object, of: str, options: str = "--px-per-m or --ruler"
 ) -> None:
-    """Refuse an area in cm2 where no option gives the scale of a picture (E131)."""
+    """Refuse an area that is not in px where no option gives the scale of a picture (E131)."""
     if scale is None and area is not None and area[1] == "cm2":
-        what = f"an area in cm2 needs the scale of the {of}."
+        what = f"an area that is not in px needs the scale of the {of}."
         cure = f"Give it with {options}, or give the area in px."
         raise UsageError("E131", what, where="--min-area", cure=cure)
 

@@ -14,6 +14,7 @@ from drystone.io.folder_lock import has_files, locked
 from drystone.whole_files import refuse_existing
 
 _PICTURES = (".png", ".pdf", ".svg")
+_GONE_ON_FROM = "plan.json", "checkpoint.json"  # by `plan --resume`
 
 
 def refuse_file(path: Path) -> None:
@@ -45,6 +46,8 @@ def prepare_folder(path: Path, names: Sequence[str], *, overwrite: bool) -> None
     make_folder(path)
     if has_files(path) and not overwrite:
         cure = "Choose another with -o, or add --overwrite; nothing else in it is touched."
+        if "checkpoint.json" in names and any((path / n).exists() for n in _GONE_ON_FROM):
+            cure = f"Add --resume to go on with a plan that was cut off. {cure}"
         raise refusal(path, "the folder is not empty.", cure)
     try:
         TemporaryFile(dir=path).close()

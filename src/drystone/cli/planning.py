@@ -60,11 +60,11 @@ def plan_and_write(request: PlanRequest, *, prepared: bool = False) -> ExitCode:
         with locked(folder, choice.PLACES) if left else nullcontext():
             return _EXIT[keeping.tell_finished(earlier.plan, request)]
     earlier.tell()
-    begin = keeping.plan_to_begin_with(request)
-    begun = earlier.plan or begin
-    # What cannot be meant is refused before a folder is made: E138 of a ruler, E126.
+    # What cannot be meant is refused before a folder is made: E138 of a ruler, E144, E126.
     refuse_outside(request.px_per_m, picture_size_px(stones.source))
     site = Site.from_source(*request.wall, request.scale, request.px_per_m)
+    begin, begin_wall = keeping.plan_to_begin_with(request, site)
+    begun = earlier.plan or begin
     if not fitting_stones(stones, site, request.settings):
         what = (
             f"none of the {len(stones)} stones can be built with: each is banned, or fits into "
@@ -104,7 +104,7 @@ def plan_and_write(request: PlanRequest, *, prepared: bool = False) -> ExitCode:
                 callbacks=callbacks,
                 built=None if earlier.plan is None else rebuild_wall(earlier.plan, stones),
                 course_heights_px=None if begun is None else begun.course_heights_px,
-                begin=None if begin is None else rebuild_wall(begin, stones),
+                begin=begin_wall,
                 choice=request.options.pareto,
                 keep=keeper,
                 state=earlier.state,

@@ -27,7 +27,7 @@ def add_reading(command: argparse.ArgumentParser) -> None:
     option("--mask", action=argparse.BooleanOptionalAction, default=None,
            help="read the picture as a binary mask, or as ids")
     option("--min-area", type=area, metavar="AREA",
-           help="leave out smaller stones: px, or 12cm2 where the scale is given")
+           help="leave out smaller stones: px, or 12cm2 or 2in2 where the scale is given")
     option("--skip", type=int, action="append", metavar="ID",
            help="leave this out, it is not a stone; repeatable")
     option("--keep", type=int, action="append", metavar="ID",

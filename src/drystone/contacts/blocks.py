@@ -134,7 +134,8 @@ def pieces_apart(labels: Labels) -> tuple[tuple[int, int], ...]:
 
 def notices_of(labels: Labels) -> tuple[Notice, ...]:
     """Say how many rows below the stones are empty (W301), and whose pixels lie apart (W304)."""
-    below, apart = int(np.argmax(labels[::-1].any(axis=1))), pieces_apart(labels)
+    filled, apart = np.append(labels[::-1].any(axis=1), False), pieces_apart(labels)
+    below = int(np.argmax(filled))
     rows = f"{counted(below, 'empty row')} below the stones left out"
     notices = (Notice("W301", f"{rows}: the wall stands on its lowest stone pixel."),) * (below > 0)
     if not apart:

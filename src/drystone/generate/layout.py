@@ -42,8 +42,9 @@ def check_room(
 def lay_out(stones: StoneSet) -> Labels:
     """Draw stones in rows, in the order of their ids, without turning or touching any.
 
-    Reading the image gives the same stones; those of a generator lie in it where their
-    `left_px` and `bottom_px` say.
+    Reading the image gives the same stones, but for holes, which are filled, and specks, which are
+    left out.  One stone alone may be read as a mask, and is then number 1.  Those of a generator
+    lie where their `left_px` and `bottom_px` say.
 
     Parameters
     ----------

@@ -1,8 +1,9 @@
 """Noisy polygons as in Thangavelu et al. (2018), the paper's first series of §5.3."""
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import chain, count
+from itertools import count
 
 import numpy as np
 import shapely
@@ -18,6 +19,7 @@ from drystone.generate.layout import (
     whole_mask,
 )
 from drystone.kernels.polygons import Points
+from drystone.kernels.raster import Mask
 from drystone.model.settings import typed
 from drystone.model.stone import StoneSet
 
@@ -108,12 +110,17 @@ def polygon_stones(settings: PolygonSettings, rng: Generator) -> StoneSet:
     def drawn() -> Points:
         return accepted((noisy_polygon(settings, rng) for _ in count()), "polygon")
 
+    def whole(i: int, factor: float) -> Iterator[Mask | None]:
+        while True:
+            yield whole_mask(factor * outlines[i])
+            outlines[i] = drawn()  # it breaks into pieces of pixels when it is reduced
+
     outlines = [drawn() for _ in range(settings.count)]
-    brick_area = settings.width_px * settings.height_px
-    factor = math.sqrt(brick_area / np.mean([polygon_area(outline) for outline in outlines]))
-    masks = []
-    for outline in outlines:
-        # One that breaks into pieces of pixels when it is reduced is drawn again.
-        tried = chain([outline], (drawn() for _ in count()))
-        masks.append(accepted((whole_mask(factor * one) for one in tried), "polygon"))
+    areas: list[float] = []
+    while areas != (kept := [polygon_area(outline) for outline in outlines]):
+        areas = kept
+        factor = math.sqrt(settings.width_px * settings.height_px / np.mean(areas))
+        masks = [accepted(whole(i, factor), "polygon") for i in range(settings.count)]
+        if settings.convex:  # few hulls break: a set changes by 1 %
+            break
     return stones_of(masks)

@@ -21,7 +21,7 @@ from drystone.search.state import SearchState
 from drystone.whole_files import write_whole
 
 CHECKPOINT = "checkpoint.json"
-SCHEMA = "drystone-checkpoint/1"
+SCHEMA = "drystone-checkpoint/2"
 
 LARGEST_BYTES = 200_000_000
 """No search of ours writes so much; what is larger is not read."""

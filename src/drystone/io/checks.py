@@ -17,6 +17,8 @@ RARE_PX = 10
 _MANY_VALUES = 64
 _PLAIN_SHARE = 0.5
 _PLAIN_SHARE_LOSSY = 0.3
+_CLEAR_SHARE = 0.01
+"""Of a photograph that stones were cut out of, what is transparent at least."""
 _BLENDED_SHARE = 0.5
 """Measured on published labels scaled or blurred: .57 (bicubic, which overshoots) ... 1."""
 _FEW_VALUES = 8
@@ -105,19 +107,40 @@ def check_not_lossy(image: IdImage) -> None:
 
 
 def check_not_photo(census: Census) -> None:
-    """Refuse a picture whose neighbouring pixels mostly differ (E102).
+    """Refuse a picture whose neighbouring pixels mostly differ (E102)."""
+    if _is_photo(census):
+        raise _photo(census)
+
+
+def _is_photo(census: Census) -> bool:
+    """Tell a picture whose neighbouring pixels mostly differ.
 
     Measured on pairs of neighbours of which one is not the most frequent value: in stones wider
     than 3 px most of them are equal, in photos few are.
     """
     if len(census.values) <= _MANY_VALUES:
-        return
+        return False
     left, right = census.index[:, :-1], census.index[:, 1:]
     common = int(np.argmax(census.counts)) + 1
     pairs = (left != common) | (right != common)
     equal = int(((left == right) & pairs).sum())
-    if equal < _PLAIN_SHARE * int(pairs.sum()):
-        raise _photo(census)
+    return equal < _PLAIN_SHARE * int(pairs.sum())
+
+
+def cut_out(image: IdImage) -> IdImage:
+    """Return the mask by which a photograph was cut out, which is its alpha, and say so (W135)."""
+    alpha = image.alpha
+    if alpha is None or not _is_photo(image.census):
+        return image
+    top = int(alpha.max())
+    clear, full = np.count_nonzero(alpha <= top // 8), np.count_nonzero(alpha >= top - top // 8)
+    # Neither a window with round corners nor one that fades away.
+    if clear < _CLEAR_SHARE * alpha.size or alpha.size - clear > 2 * full:
+        return image
+    what = "what can be seen has the colours of a photograph: alpha was read in place of them."
+    cure = "Give a label image where stones touch, one id a stone."
+    mask = (alpha > top // 2).view(np.uint8)
+    return IdImage(mask, 0, notices=(*image.said, Notice("W135", what, cure)))
 
 
 def _photo(census: Census) -> LabelImageError:

@@ -66,6 +66,7 @@ class IdImage:
     nearly_grey: bool = True  # False when the picture shows colours
     notices: tuple[Notice, ...] = ()  # how colours became ids, and what is ground by the format
     has_edges: bool = False  # some pixels are -1, as a watershed leaves edges and a rim
+    alpha: NDArray[Any] | None = None  # (h, w), that of the file, 0 is transparent
 
     @cached_property
     def census(self) -> Census:
@@ -127,7 +128,8 @@ def to_ids(picture: Picture, background: int) -> IdImage:
         _check_no_stone_of_zero(image, ground, named=background < 0)
         said += tuple(_ground_notice(name, there) for name, there in no_ids if name)
     edges = picture.values.dtype.kind in "if" and bool((picture.values == -1).any())
-    return replace(image, notices=(*notices, *said, *image.notices), has_edges=edges)
+    said = (*notices, *said, *image.notices)
+    return replace(image, notices=said, has_edges=edges, alpha=picture.alpha)
 
 
 def _transparent(

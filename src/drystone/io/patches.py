@@ -18,6 +18,7 @@ from drystone.io.read_settings import ReadSettings
 from drystone.kernels.ids import counted
 from drystone.kernels.polygons import Points
 from drystone.kernels.raster import Mask
+from drystone.model.outline import is_outline_of, solid
 from drystone.model.stone import Source, Stone, StoneSet
 
 SMALL_SHARE = 0.02
@@ -115,6 +116,9 @@ class StonePatch(PlacedMask):
         end = self.row + self.mask.shape[0]
         bottom, corner = self.picture_height - end, np.array((self.col, end))
         drawn = None if self.drawn is None else (self.drawn - corner) * (1.0, -1.0)
+        # Of an outline that crosses itself the edge of its largest part was drawn.
+        if drawn is not None and not is_outline_of(drawn, solid(self.mask)):
+            drawn = None
         return Stone(self.id, self.mask, self.col, bottom, self.name, drawn)
 
 
@@ -154,10 +158,12 @@ def stone_set(
     source: Source,
     settings: ReadSettings,
     taken: Collection[int] = (),
+    larger: str = "",
 ) -> StoneSet:
     """Put patches in order and make stones of them; every decision becomes a notice.
 
-    Numbers `taken` are those of the file, also of what is left out.
+    Numbers `taken` are those of the file, also of what is left out; `larger` is how to read it so
+    that none is too small.
     """
     pieces_so_far = 0
     for patch in found:
@@ -182,12 +188,12 @@ def stone_set(
     if not patches:
         why = " ".join(notice.message for notice in specks or (() if known else notices))
         why = why or ("all were skipped." if known else "none has a pixel.")
-        raise LabelImageError(
-            "E104",
-            f"no stones are left: {why}",
-            cure="Check the picture, and what --min-area and --skip (min_area_px and skip in "
-            "Python) leave out.",
+        cure = (
+            "Check the picture, and what --min-area and --skip (min_area_px and skip in Python) "
+            "leave out."
         )
+        cure = larger + cure if specks or not known else cure
+        raise LabelImageError("E104", f"no stones are left: {why}", cure=cure)
     noticed += [*specks, *holes, *pieces, *bits, *_suspect_necks(patches)]
     return StoneSet(tuple(patch.to_stone() for patch in patches), source, tuple(noticed))
 

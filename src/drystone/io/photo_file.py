@@ -164,7 +164,8 @@ def _to_rgb(values: NDArray[Any]) -> tuple[NDArray[np.uint8], tuple[Notice, ...]
         raise unread(what, "Export it with 8 or 16 bits a channel.")
     if values.shape[2] in (2, 4):
         if (values[..., -1] < 255).any():
-            notices.append(Notice("W174", "Transparency was ignored."))
+            cure = "Where it cuts the stones out, give the picture itself to `drystone plan`."
+            notices.append(Notice("W174", "Transparency was ignored.", cure))
         values = values[..., :-1]
     if values.shape[2] == 1:
         values = np.repeat(values, 3, axis=2)

@@ -175,6 +175,8 @@ def _checked(
     checks.check_not_uniform(image)
     if lossy and not settings.mask:
         checks.check_not_lossy(image)
+    if settings.mask is not False:
+        image = checks.cut_out(image)
     binary = masks.find_mask(image, settings.mask, lossy=lossy)
     if binary is None:
         checks.check_not_photo(image.census)
@@ -273,6 +275,9 @@ def _mask_of_one(
 
 
 Reader = Callable[[bytes, ReadSettings], OutlineFile]
+
+FEW_PX = 100
+"""Drawings that are smaller are hardly in px."""
 
 MOST_TEXT_BYTES = 500_000_000
 """Larger files of outlines are refused; that of all images of COCO has 450 MB."""
@@ -401,7 +406,11 @@ def stones_and_outlines(
     source = Source(name, digest, *size_px, (), reading, px_per_m, file.photograph)
     notices = [*file.notices, *wedges, *classes, *renumbered, *said]
     taken = {stone.id or 0 for stone in stones}
-    return stone_set(patches, notices, source, settings, taken), file
+    larger = "Give a larger --px-per-m (px_per_m in Python). "
+    if file.unit_m is None:
+        few = max(size_px) < FEW_PX
+        larger = "Say --unit m if its lengths are metres (unit in Python). " if few else ""
+    return stone_set(patches, notices, source, settings, taken, larger), file
 
 
 _SAID = "this file says itself what is stone, so {option} has no meaning.", "pictures of stones"

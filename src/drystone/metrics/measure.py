@@ -69,7 +69,8 @@ def measure_labels(
         bounding box of the stones.
     wedge_ids : collection of int
         Labels that are wedges: left out of `F_SF`, of the mean sizes and of the count, a stone
-        like any other for joints, top and ends.
+        like any other for joints, top and ends.  Those without a pixel, as thin wedges on outlines
+        may be, change nothing.
     stone_area_px : float, optional
         Area of the stones when it is known better than from the pixels, as in plans: nearest
         sampling changes a mask by up to 3.5 %, and a search would pick the larger ones.
@@ -83,7 +84,7 @@ def measure_labels(
         E104 when there is no stone in the image; E301 when the array is no picture of ids.
     UsageError
         E121 when `wall_px` is no width and height, positive and finite, or fills the memory; E138
-        when the area of the stones is below 0 or not finite.
+        when the area of the stones or F_LR is below 0 or not finite.
 
     Examples
     --------
@@ -93,9 +94,11 @@ def measure_labels(
     >>> metrics.F_SF, metrics.T_LEVEL, metrics.E_FLUSH, metrics.stones
     (1.0, 0.0, 0.0, 4)
     """
-    if stone_area_px is not None and not 0 <= stone_area_px < math.inf:
-        what, cure = f"{stone_area_px} is not an area.", "Give 0 or more, in px of the image."
-        raise UsageError("E138", what, where="stone_area_px", cure=cure)
+    known = {"stone_area_px": stone_area_px, "lateral_resistance": lateral_resistance}
+    for name, value in known.items():
+        if value is not None and not 0 <= value < math.inf:
+            what = f"it must be finite and 0 or more, not {value}."
+            raise UsageError("E138", what, where=name, cure="Leave it out where it is not known.")
     sides: tuple[float, ...] = (1.0, 1.0) if wall_px is None else wall_px
     if len(sides) != 2 or not all(0 < side < math.inf for side in sides):
         what = f"a wall of {' x '.join(f'{side:g}' for side in sides)} px has no room."

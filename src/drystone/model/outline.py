@@ -185,6 +185,21 @@ def drawn_outline(ring: Points, tolerance_px: float) -> Points:
     return _fitted(_without_straight_ones(drawn), area)
 
 
+def is_outline_of(ring: Points, pixels: Mask) -> bool:
+    """Say whether a ring, y up, is simple, counter-clockwise, and that of some solid pixels.
+
+    Those have their centres in it: none is 1 px beyond it, and their area is its own but for 1 px
+    all along it.
+    """
+    if ring.shape[1:] != (2,) or len(ring) < 3 or not np.isfinite(ring).all():
+        return False
+    polygon, (height, width) = shapely.Polygon(ring), pixels.shape
+    left, bottom, right, top = polygon.bounds
+    beyond_px = max(left, bottom, width - right, height - top)
+    near = beyond_px <= 1.0 and abs(polygon.area - np.count_nonzero(pixels)) <= polygon.length
+    return bool(near and polygon.is_valid and polygon.exterior.is_ccw)
+
+
 def reach_px(tolerance_px: float) -> float:
     """Return how far an outline is from any point of its contour at most, for a tolerance."""
     return tolerance_px + FIT * max(1.0, tolerance_px)

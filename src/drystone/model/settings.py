@@ -9,6 +9,7 @@ import re
 import reprlib
 import types
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from operator import index
 from pathlib import Path
 from typing import Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
@@ -45,8 +46,12 @@ def of_type(value: Any, hint: Any, name: str) -> Any:
             return value
         elif kind is tuple and isinstance(value, Collection) and not isinstance(value, str):
             return tuple(of_type(each, of[0], f"each of {name}") for each in value)
-        elif kind is Any or isinstance(value, kind) or (kind is np.ndarray and np.ndim(value)):
+        elif kind is Any or isinstance(value, kind):
             return value
+        elif kind is np.ndarray:
+            with suppress(ValueError):  # rows of several lengths are no array
+                if np.ndim(value):
+                    return value
     said = " or ".join(_KINDS.get(get_origin(one) or one) or one.__name__ for one in kinds)
     raise TypeError(f"{name} must be {said}, not {reprlib.repr(value)}")
 

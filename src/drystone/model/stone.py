@@ -6,12 +6,20 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
 
-from drystone.errors import Notice, PlanError
+from drystone.errors import InputError, Notice, PlanError
 from drystone.kernels.polygons import Points, area_and_centroid
 from drystone.kernels.raster import Mask
 from drystone.kernels.silhouette import pixel_hull
-from drystone.model.outline import centroid_of, drawn_outline, solid, stone_outline
+from drystone.model.outline import (
+    centroid_of,
+    drawn_outline,
+    is_outline_of,
+    solid,
+    stone_outline,
+)
 from drystone.model.settings import typed
 
 OUTLINE_TOLERANCE_PX = 0.75
@@ -33,7 +41,7 @@ class Stone:
     id : int
         Label in the source image, from 1 to 4294967295.
     mask : (h, w) bool array
-        The stone's pixels, cropped to their bounding box, row 0 at the top, one connected piece.
+        The stone's pixels, cropped to their bounding box, row 0 at the top, one 8-connected piece.
         Holes are filled unless they are kept: then area and centroid are without them, and the
         outline is the outer one all the same.
     left_px, bottom_px : int
@@ -44,6 +52,11 @@ class Stone:
     drawn : (n, 2) array, optional
         The outline that its file draws, simple, counter-clockwise, from the mask's bottom-left
         corner, y up, px.  The mask is its pixels; without it the outline is that of the mask.
+
+    Raises
+    ------
+    InputError
+        E183 when id, mask or outline are not as said here.
 
     Examples
     --------
@@ -60,14 +73,27 @@ class Stone:
     drawn: Points | None = None
 
     def __post_init__(self) -> None:
-        mask = np.array(self.mask, dtype=bool)
-        if not 0 < self.id < 2**32:
-            raise ValueError(f"id must be a whole number from 1 to 4294967295, not {self.id}")
-        if mask.ndim != 2 or not mask.any():
-            raise ValueError("mask must be a two-dimensional array with at least one pixel")
-        mask.flags.writeable = False
+        mask = _own(np.ma.filled(self.mask, 0), "mask", bool, "biu")  # what is masked is no stone
+        drawn = self.drawn
+        if drawn is not None:
+            drawn = _own(np.asarray(drawn), "drawn", float, "iuf")
         object.__setattr__(self, "mask", mask)
+        object.__setattr__(self, "drawn", drawn)
         object.__setattr__(self, "name", writable(self.name))
+        if not 0 < self.id < 2**32:
+            wrong = "the id must be a whole number from 1 to 4294967295."
+        elif mask.ndim != 2 or not mask.any():
+            wrong = "the mask must be a two-dimensional array with at least one pixel."
+        elif not all(side.any() for side in (mask[0], mask[-1], mask[:, 0], mask[:, -1])):
+            wrong = "the mask must be cropped to the box around its pixels."
+        elif ndimage.label(mask, np.ones((3, 3)))[1] > 1:
+            wrong = "the mask must be one connected piece."
+        elif drawn is not None and not is_outline_of(drawn, self.solid):
+            wrong = "the drawn outline must be simple, counter-clockwise, y up, and of the mask."
+        else:
+            return
+        cure = "`read_stones` makes stones of pictures and of files of outlines."
+        raise InputError("E183", wrong, where=f"stone {self.id}", cure=cure)
 
     def __repr__(self) -> str:
         height, width = self.mask.shape
@@ -175,6 +201,15 @@ class Source:
     def __post_init__(self) -> None:
         object.__setattr__(self, "path", writable(self.path))
         object.__setattr__(self, "files", tuple(writable(name) for name in self.files))
+
+
+def _own(array: NDArray[Any], name: str, dtype: type, kinds: str) -> NDArray[Any]:
+    """Return a copy that never changes; TypeError when it is an array of something else."""
+    if array.dtype.kind not in kinds:
+        raise TypeError(f"{name} must be an array of {dtype.__name__}, not of {array.dtype}")
+    own: NDArray[Any] = array.astype(dtype)
+    own.flags.writeable = False
+    return own
 
 
 def writable(name: str) -> str:

@@ -16,8 +16,11 @@ Labels = NDArray[np.uint32]
 
 
 def picture_of_ids(labels: Labels) -> Labels:
-    """Return a picture of ids as an array; refuse scaled values, colours and masks (E301)."""
-    ids = np.asarray(labels)
+    """Return a picture of ids as an array; refuse scaled values, colours and masks (E301).
+
+    What a masked array masks is nothing.
+    """
+    ids = np.ma.filled(labels, 0)
     fits = ids.ndim == 2 and ids.dtype.kind in "iu"
     if not fits or (ids.size and (ids.min() < 0 or ids.max() >= 2**63)):
         what = f"an array of shape {ids.shape} and type {ids.dtype} is not a picture of ids."

@@ -26,8 +26,8 @@ LEAST_SIZE_MM = 10.0
 MIDDLE_MM = 45.0
 """Room for the check line and the text, between the margins of the upper and lower markers."""
 
-_SIZE = re.compile(r"\s*(\d+(?:\.\d*)?|\.\d+)\s*(mm|cm|m)\s*")
-_MM = {"mm": 1.0, "cm": 10.0, "m": 1000.0}
+_SIZE = re.compile(r"\s*(\d+(?:\.\d*)?|\.\d+)\s*(mm|cm|m|in|ft)\s*")
+_MM = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "in": 25.4, "ft": 304.8}
 
 
 @dataclass(frozen=True)
@@ -113,12 +113,12 @@ def page_mm(page: str) -> tuple[float, float]:
     return PAGES_MM[page]
 
 
-def parse_size_m(text: str) -> float:
-    """Read the size of a marker such as ``50mm``, ``5cm`` or ``0.05m``; E174 for anything else."""
+def parse_size_m(text: str, option: str) -> float:
+    """Read a length such as ``50mm``, ``5cm``, ``0.05m`` or ``2in``; E174 for anything else."""
     found = _SIZE.fullmatch(text)
     value = 0.0 if found is None else float(found[1]) * _MM[found[2]]
     if not 0.0 < value < 10_000.0:
-        raise _no_sheet(f"{text!r} is not a marker size", "a length such as 50mm, 5cm or 0.05m")
+        raise _no_sheet(f"{text!r} is not a length", "one such as 50mm, 5cm or 2in", option)
     return value / 1000.0
 
 
@@ -133,16 +133,17 @@ def parse_layout(
     if not 0.5 < printed < 2.0:
         raise _no_sheet(
             f"a check line of {CHECK_LINE_MM * printed:g} mm is not plausible",
-            "what a ruler says, such as 97mm",
+            "what a ruler says, such as 97mm or 3.82in",
+            "--check-line",
         )
     page, _, size = text.partition(":")
     named = {known.lower(): known for known in PAGES_MM}.get(page.strip().lower())
     if named is None:
-        return MarkerLayout(parse_size_m(text), None, ids, printed)
-    size_m = parse_size_m(size or "50mm")
+        return MarkerLayout(parse_size_m(text, "--aruco"), None, ids, printed)
+    size_m = parse_size_m(size or "50mm", "--aruco")
     sheet_positions_m(named, size_m)
     return MarkerLayout(size_m, named, FIRST_SHEET if ids is None else ids, printed)
 
 
-def _no_sheet(what: str, instead: str) -> UsageError:
-    return UsageError("E174", f"{what}.", where="markers", cure=f"Give {instead}.")
+def _no_sheet(what: str, instead: str, where: str = "markers") -> UsageError:
+    return UsageError("E174", f"{what}.", where=where, cure=f"Give {instead}.")

@@ -102,14 +102,16 @@ class Measured:
         return REACH * math.sqrt(self.stone.area_px)
 
     def marked(self, stabilised: Group) -> Group:
-        """Return a place of the stone that says when it is not turned as planned."""
+        """Return a place that says when the stone is turned; its wedges keep their ids."""
         placement = stabilised.placement
         if self.planned is None:
             return stabilised
         before = self.planned.placement
         turned = before.posed.angle_deg != placement.posed.angle_deg
         moves = max(before.rotation_moves, placement.rotation_moves, int(turned))
-        return replace(stabilised, placement=replace(placement, rotation_moves=moves))
+        ids = {place: wedge.id for place, wedge in enumerate(self.planned.wedges)}
+        wedges = (replace(w, id=ids.get(i, w.id)) for i, w in enumerate(stabilised.wedges))
+        return Group(replace(placement, rotation_moves=moves), tuple(wedges))
 
 
 def rebuilt(
@@ -177,7 +179,8 @@ def _built(
     for stone_id in order:
         planned, place = groups.get(stone_id), places[stone_id]
         if planned is not None and place.as_planned:
-            again = replayed(build, [planned], heights, workshop, settings, keep=keep)
+            same = build, [planned], heights, workshop, settings
+            again = replayed(*same, keep=keep, renumber=False)
             if not again.left_out:
                 build = again.build
                 continue

@@ -86,7 +86,7 @@ def plan_metrics(
     """
     wall, site = build.wall, build.wall.site
     if not wall.groups:
-        return PlanMetrics(0.0, None, None, None, 0.0, 0.0, None, None, 0.0)
+        return PlanMetrics(0.0, None, None, None, None, None, None, None, 0.0)
     width, height = site.extent_px
     measured = measure_labels(
         wall.labels,

@@ -76,6 +76,7 @@ class Attempt:
         self._judged: dict[tuple[int, float, Side, int], Candidate] = {}
         # Those that stand, but fall in so large a share of the trials, which is bearable.
         self._unsure: list[tuple[float, Candidate]] = []
+        self.declined = False  # whether a policy took none of the places that it was offered
         self._refused = False  # whether a stone fell in too many trials somewhere
 
     @property
@@ -149,10 +150,12 @@ class Attempt:
     def _best(self, proposals: Sequence[Proposal], rng: np.random.Generator) -> Candidate | None:
         if self._policy is not None:
             name, settings = self._settings.selection_rule, self._settings.policy
-            return choose.choose_by_policy(
+            chosen, declined = choose.choose_by_policy(
                 proposals, self._judge, self._policy, name=name, build=self.build,
                 settings=settings, rng=rng,
             )  # fmt: skip
+            self.declined |= declined
+            return chosen
         if self._settings.selection_rule == "score":
             return choose.choose_by_score(proposals, self._judge, self._settings.score, self._sure)
         return choose.choose_by_algorithm2(proposals, self._judge, self._settings.selection)

@@ -100,10 +100,11 @@ def choose_by_policy(
     build: Build,
     settings: PolicySettings,
     rng: np.random.Generator,
-) -> Candidate | None:
+) -> tuple[Candidate | None, bool]:
     """Return the action that a policy chooses among those after which the wall stands.
 
-    Where it asks an engine, what does not stay where it is put is dropped, and it chooses again.
+    Says too whether it took none of those that it was offered.  Where it asks an engine, what does
+    not stay where it is put is dropped, and it chooses again.
 
     All proposals, those of all sides, are analysed; as with the other rules LLC must be positive.
     UsageError (E147): the policy failed.
@@ -116,8 +117,8 @@ def choose_by_policy(
         offers = [offer(one, wall.site, wedges) for one in standing]
         position = choice_of(name, policy, offers, rng)
         if position is None:
-            return None
+            return None, bool(offers)
         chosen = standing[position]
         if not asks or holds(wall, chosen.stabilised, mu):
-            return chosen
+            return chosen, False
         standing = [one for one in standing if one is not chosen]

@@ -100,12 +100,12 @@ def places_of(poses: Mapping[int, MeasuredPose], site: Site) -> dict[int, Measur
 
 
 def places_in(
-    labels: NDArray[np.integer], wall: Wall, stones: StoneSet
+    labels: NDArray[np.integer], wall: Wall, stones: StoneSet, wedge_ids: frozenset[int]
 ) -> dict[int, MeasuredPlace]:
     """Return where the stones of a picture of ids are.
 
     The picture has 0 for nothing, row 0 at the top; it shows the whole wall at the working or the
-    source resolution of the site.  Ids of the wedges of the planned `wall` are not looked at.
+    source resolution of the site.  Ids of wedges are not looked at.
 
     Each stone is matched with its outline: its centroid is that of its pixels, its angle the one
     at which the outline covers them best, and both are refined together until the squared
@@ -117,7 +117,7 @@ def places_in(
     labels, site = np.asarray(labels), wall.site
     scale = _scale_of(labels, site)
     planned = {p.stone_id: p for p in wall.placements}
-    ids = set(np.unique(labels).tolist()) - {0} - {wedge.id for wedge in wall.wedges}
+    ids = set(np.unique(labels).tolist()) - {0} - wedge_ids
     require_known(ids, stones)
     expected = _expected(wall, scale)
     found = {}
@@ -168,10 +168,11 @@ def fitted(seen: Mask, outline: Points, scale: float, planned_deg: float | None)
     reach = float(np.hypot(*shape.T).max())
 
     def misfit(pose: Fit) -> float:
-        """Return the sum of squares of what is covered of each pixel, less what is seen."""
+        """Return the sum, over the picture, of squares of what is covered less what is seen."""
         shares, left, bottom = coverage(turn(shape, pose[2]) + pose[:2])
         inside, part = windows(seen.shape, shares.shape, len(seen) - bottom - len(shares), left)
-        both = float(shares[part][seen[inside]].sum())
+        shares = shares[part]
+        both = float(shares[seen[inside]].sum())
         return len(rows) + float((shares * shares).sum()) - 2.0 * both
 
     angles = np.arange(0.0, 360.0, COARSE_DEG).tolist()

@@ -146,7 +146,7 @@ def without(
 def _places(build: Build, measured: Measurement, workshop: Workshop) -> dict[int, MeasuredPlace]:
     """Return where the stones are; those that are where they were planned are marked."""
     if not isinstance(measured, Mapping):
-        return places_in(measured, build.wall, workshop.stones)
+        return places_in(measured, build.wall, workshop.stones, workshop.wedge_ids)
     require_known(measured, workshop.stones)
     places = places_of(measured, workshop.site)
     for placement in build.wall.placements:

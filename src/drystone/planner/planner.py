@@ -18,7 +18,7 @@ from drystone.planner.evaluate import Evaluator
 from drystone.planner.events import Callbacks, Step, Stopped
 from drystone.planner.observe import Measurement, Observation, observed, without
 from drystone.planner.profile import Profile
-from drystone.planner.replay import judged
+from drystone.planner.replay import differences, judged, refuse
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.vary import WEIGHT_DRAWS, varied
 from drystone.planner.workshop import Workshop
@@ -111,7 +111,7 @@ class Planner:
         attempt = self._attempt(until)
         failures = 0  # zeta
         aside: set[int] = set()
-        while (stopped := self._why_stop(failures, aside)) is None:  # lines 5 and 27
+        while (stopped := self._why_stop(failures, aside, attempt)) is None:  # lines 5 and 27
             rng = np.random.default_rng([self.seed, len(self.build.actions), failures])
             action = self._choose(attempt, rng, aside)  # lines 6-17
             if action is None:
@@ -167,7 +167,9 @@ class Planner:
         exact, mean_area_px = self.settings.geometry == "exact", self.workshop.stock.mean_area_px
         return Build.empty(self.workshop.site, self.settings.mu, mean_area_px, exact=exact)
 
-    def _why_stop(self, failures: int, aside: set[int]) -> Stopped | None:
+    def _why_stop(
+        self, failures: int, aside: set[int], attempt: Attempt | None = None
+    ) -> Stopped | None:
         """Say why construction ends here; None when it goes on."""
         stop = self.settings.stop
         if self.build.wall.filling > stop.filling:
@@ -184,15 +186,22 @@ class Planner:
             return Stopped("failures", "no stone is left that was not tried in its turn")
         # There is nothing to resample when all stones were tried.
         if failures >= stop.failures or (failures and self.settings.sampling == "full"):
-            return Stopped("failures", "no stone that is left can be placed")
+            declined = attempt is not None and attempt.declined
+            took_none = "the policy took none of the places it was offered"
+            return Stopped(
+                "failures", took_none if declined else "no stone that is left can be placed"
+            )
         return None
 
     def restore(self, wall: Wall, course_heights_px: Mapping[int, float]) -> None:
         """Go on from a wall, on the planner's site and of its stones, that is built already.
 
         `course_heights_px` is the height that Eq. 8 compared with, for stones that began a course.
+        UsageError (E144): it is of something else than what this planner builds.
         """
-        evaluator = Evaluator(self.settings, self.workshop.stock, self.profile)
+        workshop = self.workshop
+        refuse(differences(wall, workshop.stones, workshop.site, self.settings), "wall")
+        evaluator = Evaluator(self.settings, workshop.stock, self.profile)
         build = self._empty()
         for group in wall.groups:
             action = judged(build, group, course_heights_px, evaluator)
@@ -248,6 +257,8 @@ class Planner:
         (1.0, True)
         """
         lost = tuple(lost)
+        ids = self.workshop.wedge_ids.union(wedge.id for wedge in self.build.wall.wedges)
+        self.workshop = replace(self.workshop, wedge_ids=ids)
         build, observation = observed(
             self._empty(), self.build, measured, lost, self.workshop, self.settings
         )

@@ -40,6 +40,8 @@ class Workshop:
     views: Views  # of walls of outlines
     seats: Seats  # tries places on them
     limits: WedgeLimits  # what their wedges may be, source px
+    # ids of wedges that were in the wall when it was measured: no other wedge gets one of them
+    wedge_ids: frozenset[int] = frozenset()
     _angles: dict[int, tuple[float, ...]] = field(default_factory=dict, init=False, repr=False)
 
     @classmethod
@@ -81,7 +83,8 @@ class Workshop:
 
     def next_wedge(self, build: Build) -> int:
         """Return the id of the next wedge: after the largest of a stone and those of wedges."""
-        return self.stones.stones[-1].id + len(build.wall.wedges) + 1
+        ids = (wedge.id for wedge in build.wall.wedges)
+        return max((self.stones.stones[-1].id, *self.wedge_ids, *ids)) + 1
 
     def rest(self, build: Build) -> Rest:
         """Return what the stones that are left could still fill."""

@@ -20,7 +20,7 @@ from drystone.search.goal import FoundWall
 from drystone.search.operators import Credits
 from drystone.search.packed import PackedWall
 from drystone.search.processes import mapped
-from drystone.search.state import Chains, Link, Progress, Reached, SearchState
+from drystone.search.state import Chains, Link, Progress, Reached, SearchState, made_of
 from drystone.search.yard import Yard
 
 NOTABLE = 0.01
@@ -66,24 +66,23 @@ def searching(
         # the budget 1, which is the wall without them.
         try:
             yard.until.look()
-            at = SearchState(0, None, (PackedWall.of(wedged(start, yard)),))
+            at = SearchState(made_of(yard, seed), 0, None, (PackedWall.of(wedged(start, yard)),))
         except TimeIsUp:
             return
     while True:
-        one = _Round(at.number, at.before, job, yard.settings.search, executor)
-        chains = at.chains or (yield from one.first_walls(at.found))
+        one = _Round(at, job, yard.settings.search, executor)
+        chains = at.chains or (yield from one.first_walls())
         before = None if chains is None else (yield from one.improved(chains))
         if before is None:
             return
-        at = SearchState(at.number + 1, before, ())
+        at = SearchState(at.made_of, at.number + 1, before, ())
 
 
 @dataclass(frozen=True, eq=False)
 class _Round:
     """First walls and chains until they find nothing better: what all of it goes by."""
 
-    number: int  # from 0
-    before: Reached | None  # by the rounds before it
+    start: SearchState  # where it goes on from
     job: Job
     search: SearchSettings
     executor: Executor | None
@@ -94,25 +93,27 @@ class _Round:
 
         A search may go on with a smaller budget than it had, which ends it.
         """
-        return max(1, self.search.budget - (self.before.walls if self.before else 0))
+        before = self.start.before
+        return max(1, self.search.budget - (before.walls if before else 0))
 
-    def first_walls(self, found: Sequence[PackedWall]) -> Generator[Progress, None, Chains | None]:
+    def first_walls(self) -> Generator[Progress, None, Chains | None]:
         """Add first walls to those that are found; return what chains begin with.
 
         None where time is up.
         """
+        found, round_number = self.start.found, self.start.number
         search = replace(self.search, budget=self.budget)
         while (batch := next_batch(found, search)) is not None:
             numbers, share = batch
-            tasks = [(self.job, self.number * search.passes + k, share) for k in numbers]
+            tasks = [(self.job, round_number * search.passes + k, share) for k in numbers]
             for wall in mapped(self.executor, one_pass, tasks):
                 if wall is None:
                     return None
                 found = (*found, wall)
-                state = SearchState(self.number, self.before, found)
+                state = replace(self.start, found=found)
                 yield Progress(**vars(state.reached), state=state)
         reached = Reached.of(found)
-        links = tuple(_links(found, self.number, search.chains))
+        links = tuple(_links(found, round_number, search.chains))
         return Chains(reached, links, 0, reached.walls, reached.best.merit + NOTABLE)
 
     def improved(self, at: Chains) -> Generator[Progress, None, Reached | None]:
@@ -132,7 +133,7 @@ class _Round:
                 more = Reached(built, link.best, link.solves - at.links[k].solves, link.kept)
                 links = (*at.links[:k], replace(link, kept=()), *at.links[k + 1 :])
                 at = replace(at, reached=at.reached + more, links=links, turn=k + 1)
-                state = SearchState(self.number, self.before, (), at)
+                state = replace(self.start, found=(), chains=at)
                 yield Progress(**vars(state.reached), state=state if built == each else None)
                 if built < counts[k]:
                     # It became too late; what later chains have built is not in the budget.
@@ -141,7 +142,7 @@ class _Round:
             if best.merit >= at.goal:
                 at = replace(at, better=walls, goal=best.merit + NOTABLE)
             if walls - at.better >= search.patience * len(best.groups) and walls < budget:
-                return SearchState(self.number, self.before, (), at).reached
+                return replace(self.start, found=(), chains=at).reached
             # All chains know then which changes have helped in each.
             known = sum((link.learnt for link in at.links), at.links[0].known)
             again = [replace(link, known=known, learnt=Credits()) for link in at.links]

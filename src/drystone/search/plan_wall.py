@@ -143,8 +143,9 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
         What is built already, to go on from (:meth:`Planner.restore`): where an interrupted plan
         was.  A search may take it down again, so for real stones give a budget of 1.
     begin : Wall, optional
-        A wall of the same stones, size, resolution and geometry, to begin with as far as its
-        stones may be used and stand (:func:`drystone.search.warm_start.begin_with`).
+        A wall of the same stones and geometry, on pixels of the same size and resolution, to
+        begin with as far as its stones may be used and stand
+        (:func:`drystone.search.warm_start.begin_with`).
     choice : bool
         Keep the walls of the search that none beats in every figure of merit.
     keep : callable, optional
@@ -167,9 +168,9 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
     UsageError
         E138: the seed or the time is negative, there is no process, or both `built` and `begin` are
         given; E123: the budget is less than 1; E120 to E127, E137, E145: the wall, the scale or the
-        stones make no sense together.
+        stones make no sense together; E144: `built` or `begin` is of something else.
     PlanError
-        E207: a wall of `state` cannot be built again.
+        E207: `state` is of another search, or a wall of it cannot be built again.
 
     Examples
     --------
@@ -318,7 +319,8 @@ def _notices(
         yield Notice(
             "W121",
             f"stones {_listed(left_out)} of the plan to begin with were taken out: "
-            "banned, out of their turn, or not standing without the others or with these settings.",
+            "banned or not there, out of their turn, or not standing without the others or with "
+            "these settings.",
         )
     if ended.fallen:
         yield Notice(

@@ -6,10 +6,20 @@ find the walls again that a search would have found.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from hashlib import sha256
 
 from drystone.planner.build import Solves
+from drystone.planner.replay import identity
 from drystone.search.operators import Credits
 from drystone.search.packed import PackedWall, archived
+from drystone.search.yard import Yard
+
+
+def made_of(yard: Yard, seed: int) -> str:
+    """Return a digest of what shapes a search: stones, wall, settings but the budget, and seed."""
+    site, settings = yard.workshop.site, yard.settings.updated({"search": {"budget": 1}})
+    stones = [identity(stone) for stone in yard.workshop.stones]
+    return sha256(repr((stones, site, site.extent_px, settings, seed)).encode()).hexdigest()
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,6 +75,7 @@ class Chains:
 class SearchState:
     """Where a search stands."""
 
+    made_of: str  # all that shapes it, by which it repeats
     number: int  # of the round, from 0
     before: Reached | None  # by the rounds before it
     found: tuple[PackedWall, ...]  # its first walls, as long as there are no chains

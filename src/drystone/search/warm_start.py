@@ -3,9 +3,11 @@
 from collections.abc import Mapping
 from dataclasses import replace
 
+from drystone.model.site import Site
 from drystone.model.wall import Group, Wall, outlined
 from drystone.model.wedge_shape import WedgeShape
 from drystone.planner.planner import Planner
+from drystone.planner.replay import differences, refuse
 from drystone.planner.workshop import Workshop
 from drystone.search.yard import Yard
 from drystone.settle.rest import settled_at
@@ -20,33 +22,40 @@ def begin_with(
 ) -> tuple[int, ...]:
     """Let a planner begin with a wall, as far as its stones may be used and stand.
 
-    Without its wedges that are none by these settings.  The planner has built nothing yet, of the
-    same stones, size and resolution as the wall.  For stones that began a course, the height is
-    that which Eq. 8 compared with.  Returns the ids of the stones that were taken out: banned, out
-    of their turn in a given order, standing out of the wall by more than `settle.beyond_px` allows
-    now, or not standing with these settings, as when what carried them is left out.
+    Without its wedges that are none by these settings.  The planner has built nothing yet.  On
+    outlines the wall may be of another size or resolution.  For stones that began a course, the
+    height is that which Eq. 8 compared with.  Returns the ids of the stones that were taken out:
+    banned or not there, out of their turn in a given order, standing out of the wall by more than
+    `settle.beyond_px` allows now, or not standing with these settings, as when what carried them
+    is left out.  UsageError (E144): those that may be used are of something else.
     """
     yard = Yard.of(planner)
     workshop, settings = yard.workshop, yard.settings
-    allowed, groups, last = set(workshop.fitting), [], -1
-    for group in wall.groups:
+    fitting = set(workshop.fitting)
+    usable = tuple(group for group in wall.groups if group.placement.stone_id in fitting)
+    site = workshop.site if wall.outlines is None else wall.site
+    refuse(differences(replace(wall, groups=usable), workshop.stones, site, settings), "begin")
+    groups, last = [], -1
+    for group in usable:
         stone_id = group.placement.stone_id
         in_turn = settings.order == "free" or stone_id > last
-        if stone_id in allowed and in_turn and _within(wall, group, settings.settle.beyond_px):
+        if in_turn and _within(group, workshop.site, settings.settle.beyond_px):
             groups.append(_as_here(wall, group, workshop))
             last = stone_id
-    planner.build, _, solves = yard.replayed(planner.build, groups, course_heights_px, strict=False)
+    finer = workshop.site.scale / wall.site.scale
+    heights = {stone_id: px * finer for stone_id, px in course_heights_px.items()}
+    planner.build, _, solves = yard.replayed(planner.build, groups, heights, strict=False)
     planner.solves += solves
     used = {action.stone_id for action in planner.build.actions}
     return tuple(p.stone_id for p in wall.placements if p.stone_id not in used)
 
 
-def _within(wall: Wall, group: Group, beyond_px: float) -> bool:
+def _within(group: Group, site: Site, beyond_px: float) -> bool:
     """Say whether outlines stand out over the ends and the top by no more than they may."""
-    if wall.outlines is None:
+    if group.placement.settled is None:
         return True
     least = -beyond_px - EDGE_PX
-    width, height = wall.site.extent_px
+    width, height = site.extent_px
     return all(
         min(x.min(), width - x.max(), height - y.max()) >= least
         for x, y in (corners.T for _, corners in outlined(group.placement, group.wedges))
@@ -62,7 +71,7 @@ def _as_here(wall: Wall, group: Group, workshop: Workshop) -> Group:
     placement, settled = group.placement, group.placement.settled
     if settled is None:
         return group
-    limits, around, width = workshop.limits, wall.exact.polygons, wall.site.extent_px[0]
+    limits, around, width = workshop.limits, wall.exact.polygons, workshop.site.extent_px[0]
     kept = (
         wedge
         for wedge in group.wedges

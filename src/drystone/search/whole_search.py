@@ -25,7 +25,7 @@ from drystone.search.goal import (
 from drystone.search.interrupts import held
 from drystone.search.packed import PackedWall, archived, found_again
 from drystone.search.repair import TURNS, repairs
-from drystone.search.state import Progress, SearchState
+from drystone.search.state import Progress, SearchState, made_of
 from drystone.search.yard import Yard
 
 _FOUND = Stopped("search", "kept as the search found it")
@@ -64,7 +64,7 @@ def run_to_end(
     `first_whole` it is built to its end whatever the clock says.  Of a search that goes on from
     `start` there is no first wall to build.  What follows the search may take `grace_s`.  Told of
     every progress of the search, and before it, with None, of stones of the first wall.
-    PlanError: a wall of `start` cannot be built again (E207).
+    PlanError (E207): `start` is of another search, or a wall of it cannot be built again.
     """
     stopped = INTERRUPTED
     if start is None:
@@ -75,6 +75,8 @@ def run_to_end(
         if fallen:
             return SearchEnd(planner, stopped, 1, (), fallen=fallen)
     try:
+        if start is not None and start.made_of != made_of(Yard.of(planner), planner.seed):
+            raise ValueError("it is of other stones, another wall, other settings or another seed")
         return _improved(planner, start or stopped, until, grace_s, executor, told)
     except (ValueError, LookupError, ArithmeticError) as error:
         if start is None:
@@ -83,7 +85,7 @@ def run_to_end(
             "E207",
             f"the search cannot go on from it: {error}.",
             where="checkpoint",
-            cure="Remove it and give the same command again: the partial plan is gone on from.",
+            cure="Give what it is of, or remove it and give the same command again.",
         ) from error
     finally:
         forget()

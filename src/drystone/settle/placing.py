@@ -87,24 +87,25 @@ def settled_in(
     """
     at = repose.angle_deg, repose.settled, side, int(repose.turned)
     placement = settled_placement(wall.exact, wall.site, stone, *at)
-    return _with_wedges(wall, placement, [] if wedge is None else [wedge], wedge_id)
+    return _with_wedges(wall, placement, [] if wedge is None else [(wedge_id, wedge)])
 
 
-def settled_again(wall: Wall, group: Group, wedge_id: int) -> Group | None:
-    """Return a settled step with the pixels that it fills in another wall, wedges renumbered."""
-    old, corners = group.placement, (wedge.corners for wedge in group.wedges)
+def settled_again(wall: Wall, group: Group) -> Group | None:
+    """Return a settled step with the pixels that it fills in another wall."""
+    old = group.placement
     at = old.posed.angle_deg, old.exact, old.side, old.rotation_moves
     placement = settled_placement(wall.exact, wall.site, old.posed.stone, *at)
-    return _with_wedges(wall, placement, (c for c in corners if c is not None), wedge_id)
+    wedges = ((wedge.id, wedge.corners) for wedge in group.wedges)
+    return _with_wedges(wall, placement, ((i, c) for i, c in wedges if c is not None))
 
 
 def _with_wedges(
-    wall: Wall, placement: Placement | None, wedges: Iterable[Points], wedge_id: int
+    wall: Wall, placement: Placement | None, wedges: Iterable[tuple[int, Points]]
 ) -> Group | None:
     if placement is None:
         return None
     outlines, new = outlined(placement, ()), list[Wedge]()
-    for number, corners in enumerate(wedges, wedge_id):
+    for number, corners in wedges:
         below = wall.exact.added(outlines, wall.site.scale)
         new.append(settled_wedge(below, wall.site, number, placement.stone_id, corners))
         outlines.append((number, corners))

@@ -223,9 +223,11 @@ def check_metrics(claimed: PlanMetrics, found: PlanMetrics) -> Iterator[Problem]
     for field in fields(PlanMetrics):
         plan_says, value = getattr(claimed, field.name), getattr(found, field.name)
         tolerance = ALPHA_TOLERANCE if field.name.startswith(_BY_STATICS) else TOLERANCE
-        # Plans of other hands need not claim these.
-        optional = field.default is None or field.name in ("T_LEVEL", "E_FLUSH")
-        if plan_says is None and optional:
+        # Plans of other hands need not claim these; without stones older ones say 0 of two.
+        shape = field.name in ("T_LEVEL", "E_FLUSH")
+        if plan_says is None and (field.default is None or shape):
+            continue
+        if plan_says == 0.0 and value is None and shape:
             continue
         # The least that is found: a plan may know of less, as other solvers lead elsewhere.
         if field.name.endswith("_coulomb") and value is not None and plan_says is not None:

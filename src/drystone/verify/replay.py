@@ -270,7 +270,7 @@ def rebuild_wall(plan: Plan, stones: StoneSet) -> Wall:
     if replay.problems:
         first = replay.problems[0]
         where = "settings" if first.step is None else f"step {first.step}"
-        cure = "Give the stones that the plan was made from; `drystone check` lists everything."
+        cure = "Correct the plan, or give its own stones; `drystone check` lists everything."
         raise PlanError(first.code, first.message, where=where, cure=cure)
     return replay.wall
 

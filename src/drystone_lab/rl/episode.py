@@ -33,7 +33,7 @@ class DrawSettings:
     # and source px are the same
     size_px: float = 18.0
     surplus: float = 1.2  # Area of all stones over the area of the wall, at least .2
-    aspect: float = 2.5  # Width of the wall over its height, positive
+    aspect: float = 2.5  # Width of the wall over its height, from 1/stones to stones
 
     def __post_init__(self) -> None:
         unknown = sorted(set(self.kinds) - set(KINDS))
@@ -41,8 +41,9 @@ class DrawSettings:
             raise _refused(f"there is no generator {unknown}", f"Known: {', '.join(KINDS)}.")
         if self.stones < 3 or not self.size_px >= 8:
             raise _refused("walls need 3 stones or more, of 8 px or more", "Give more of them.")
-        if not self.surplus >= 0.2 or not self.aspect > 0:
-            raise _refused("surplus must be 0.2 or more, aspect positive", "Give larger ones.")
+        if not self.surplus >= 0.2 or not 1 / self.stones <= self.aspect <= self.stones:
+            what = "surplus must be 0.2 or more, aspect from 1/stones to stones"
+            raise _refused(what, "A wall is as wide and as high as a stone, or more.")
 
 
 def draw_wall(settings: DrawSettings, rng: Generator) -> tuple[StoneSet, Site]:
@@ -84,10 +85,11 @@ def _numbers(kind: str, settings: DrawSettings, rng: Generator) -> dict[str, flo
         aspect = float(rng.uniform(1.6, 3.0))
         height = max(2, round(size / ((1.0 - 0.5 * halves / count) * aspect) ** 0.5))
         return {"count": count - halves, "halves": halves, "height_px": height, "aspect": aspect}
-    ratio = 0.9  # rubble of a few course heights
+    # rubble, in courses about as high as its stones are wide
+    ratio, courses = 0.9, round((count / settings.aspect) ** 0.5)
     height_px = size * (count / ratio / settings.aspect) ** 0.5
     sides = {"width_px": settings.aspect * height_px, "height_px": height_px}
-    return {"count": count, **sides, "area_ratio": ratio, "courses": min(3, count)}
+    return {"count": count, **sides, "area_ratio": ratio, "courses": courses}
 
 
 def _refused(what: str, cure: str) -> UsageError:

@@ -145,6 +145,10 @@ test("what is saved is read again as it was", () => {
   assert.equal(file.drystone.px_per_m, 200);
   assert.deepEqual(file.drystone.not_used, [2]);
   assert.deepEqual(sketch.stateOf(JSON.parse(JSON.stringify(file))), state);
+  assert.equal(sketch.saidOf(file, state, "a.json"), "2 outlines were read from a.json.");
+  const others = [{ shape_type: "circle", points: square(0, 0) }, { points: [[0, 0], [1, 1]] }];
+  const more = { ...file, shapes: [...file.shapes, ...others] };
+  assert.match(sketch.saidOf(more, sketch.stateOf(more), "a"), /^2 outlines .* 2 shapes were left out/);
   // Two stones never share a number.
   assert.deepEqual(sketch.withNumber(state, 1, 2).stones.map((stone) => stone.id), [2, 1]);
 });

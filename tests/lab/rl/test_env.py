@@ -157,7 +157,7 @@ def test_reset_refuses(options):
      ({"offers": 0}, {"columns": 0}, {"illegal": "ignore"}, {"render_mode": "human"})]
     + [(DrawSettings, wrong) for wrong in
        ({"kinds": ()}, {"kinds": ("marble",)}, {"stones": 2}, {"size_px": 3.0}, {"surplus": 0.0},
-        {"aspect": 0.0})],
+        {"aspect": 0.0}, {"aspect": 0.049}, {"aspect": 20.1}, {"aspect": np.nan})],
 )  # fmt: skip
 def test_settings_that_are_refused(made, wrong):
     with pytest.raises(UsageError, match="E123"):
@@ -250,6 +250,14 @@ def test_size_and_surplus_are_those_asked_for(kind):
     area = site.width_px * site.height_px
     assert stones.total_area_px / area == pytest.approx(1.3, rel=0.03)
     assert site.width_px / site.height_px == pytest.approx(2.0, rel=0.03)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_every_wall_that_may_be_drawn_is(kind):
+    for stones in (3, 8, 40):
+        for aspect in (1.0 / stones, 0.9, 2.5, stones):
+            settings = DrawSettings(kinds=(kind,), stones=stones, size_px=8, aspect=aspect)
+            assert len(draw_wall(settings, np.random.default_rng(1))[0]) == stones
 
 
 def test_order_keeps_every_stone():

@@ -11,8 +11,9 @@ import numpy as np
 
 from drystone import generate
 from drystone.cli.numbers import whole_from
-from drystone.cli.output import prepare_files
-from drystone.errors import ExitCode, UsageError
+from drystone.cli.output import note, prepare_files
+from drystone.errors import ExitCode, Notice, UsageError, counted
+from drystone.io.patches import MIN_AREA_PX
 from drystone.io.wall_image import write_labels
 from drystone.model.settings import updated
 
@@ -42,6 +43,9 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     stones = make(settings, np.random.default_rng(arguments.seed))
     write_labels(generate.lay_out(stones), path)
     size = stones.source
+    if small := sum(stone.area_px < MIN_AREA_PX for stone in stones):
+        text = f"reading leaves out {counted(small, 'stone')} of less than {MIN_AREA_PX} px."
+        note(Notice("W113", text, "Ask for larger ones, or read them with --min-area 1."))
     print(f"{len(stones)} stones, {size.width_px} x {size.height_px} px: {path}")
     return ExitCode.DONE
 

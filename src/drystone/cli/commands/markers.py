@@ -43,7 +43,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
         what = "a sheet has four markers, and the first is 0, 4, 8 and so on."
         cure = "Give multiples of 4, or --single."
         raise UsageError("E174", what, where="--count, --ids", cure=cure)
-    size_m = parse_size_m(arguments.size or ("120mm" if single else "50mm"))
+    size_m = parse_size_m(arguments.size or ("120mm" if single else "50mm"), "--size")
     ids = tuple(range(arguments.ids, arguments.ids + count))
     sheets = MarkerSheets(ids, size_m, arguments.dictionary, arguments.page, single)
     prepare_files([path], overwrite=arguments.overwrite)

@@ -110,9 +110,9 @@ def run(arguments: argparse.Namespace) -> ExitCode:
 def _planned(wall: GivenWall, name: str) -> tuple[Plan, Groups]:
     """Return a plan, and its stones with their wedges, source px, in the order of placement."""
     plan = wall.plan
-    if plan is None or wall.blocks is None or not plan.steps:
-        what = "only a plan on outlines, with stones, can be rehearsed."
-        cure = "Give a plan.json of `drystone plan`, with the blocks.json beside it."
+    if plan is None or wall.blocks is None:
+        what = "only a plan on outlines can be rehearsed."
+        cure = "Give one of `drystone plan`; plan one on pixels again, with --geometry exact."
         raise UsageError("E138", what, where=name, cure=cure)
     outlines, px = polygons_from_json(wall.blocks), plan.px_per_m or 1.0
     groups = [[piece_id(step) for step in steps] for steps in grouped(plan.steps)[0]]

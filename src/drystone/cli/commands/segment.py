@@ -13,7 +13,7 @@ from drystone.cli import numbers
 from drystone.cli.inputs import refuse_inputs
 from drystone.cli.output import note, prepare_folder, print_json, print_table
 from drystone.cli.progress import busy
-from drystone.errors import ExitCode, Notice, UsageError, counted
+from drystone.errors import ExitCode, InputError, Notice, UsageError, counted
 from drystone.io.patches import cut
 from drystone.io.photo_beside import LABELS, PAGE, SIDECAR, PhotoSidecar, write_sidecar
 from drystone.io.photo_file import Photo, read_photo
@@ -54,13 +54,13 @@ def add(command: argparse.ArgumentParser) -> None:
     option("--marker-ids", nargs="+", type=numbers.whole_from(0), metavar="ID",
            help="ids of the markers to use (default: 0 to 3 of a sheet, all single ones)")
     option("--check-line", metavar="LENGTH",
-           help="measured length of the 100 mm line on the printed sheet, such as 97mm")
+           help="measured length of the 100 mm line on the printed sheet, such as 97mm or 3.82in")
     option = command.add_argument_group("stones").add_argument
     option("--ground", choices=["auto", "light", "dark"], default="auto",
            help="what the stones lie on (default: found by its colour)")
     option("--min-area", type=numbers.area, metavar="AREA",
-           help="leave out smaller stones: px, or 12cm2 where the scale is given (default: a "
-           "fiftieth of a usual one)")
+           help="leave out smaller stones: px, or 12cm2 or 2in2 where the scale is given (default: "
+           "a fiftieth of a usual one)")
     option("--no-split", action="store_false", dest="split", help="leave touching stones together")
     option("--mpx", type=numbers.positive, default=1.6, metavar="N",
            help="largest size of the result, million px (default 1.6)")
@@ -78,10 +78,15 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     numbers.refuse_cm2(min_area, scale, "photograph", "--aruco, --px-per-m or --ruler")
     prepare_folder(folder, WRITTEN, overwrite=arguments.overwrite)
     ground, split, max_px = arguments.ground, arguments.split, round(arguments.mpx * 1e6)
-    with busy("finding stones", quiet=arguments.json):
-        result = segment_photo(
-            photo.values, scale, ground=ground, min_area=min_area, split=split, max_px=max_px
-        )
+    try:
+        with busy("finding stones", quiet=arguments.json):
+            result = segment_photo(
+                photo.values, scale, ground=ground, min_area=min_area, split=split, max_px=max_px
+            )
+    except InputError as error:
+        cures = *(notice.cure for notice in photo.notices), error.cure
+        error.cure = " ".join(filter(None, cures))
+        raise
     doubts = doubts_of(result.found, result.px_per_m)
     if isinstance(scale, numbers.Ruled):
         ends_px = apply(result.from_photo, np.array(scale.ends_px))
@@ -128,7 +133,8 @@ def scale_from(arguments: argparse.Namespace) -> MarkerLayout | float | None:
     if arguments.px_per_m is not None:
         cure = "Give markers, or --px-per-m or --ruler."
         raise UsageError("E138", "the scale is given twice.", where="--aruco", cure=cure)
-    printed = 1.0 if arguments.check_line is None else parse_size_m(arguments.check_line) / 0.1
+    line = "100mm" if arguments.check_line is None else arguments.check_line
+    printed = parse_size_m(line, "--check-line") / 0.1
     ids = None if arguments.marker_ids is None else tuple(arguments.marker_ids)
     return parse_layout(arguments.aruco, ids, printed)
 

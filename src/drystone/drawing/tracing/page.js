@@ -4,7 +4,7 @@ import { boxOf, make } from "../report/viewer/dom.js";
 import { area, centroid, distance, sidesOf, simplified, simplifiedLine, snapped } from "./shapes.js";
 import { proposed } from "./propose.js";
 import {
-  History, SCHEMA, accepted, fileOf, openDoubts, pxPerMetre, stateOf, stoneAt, stoneOf,
+  History, SCHEMA, accepted, fileOf, openDoubts, pxPerMetre, saidOf, stateOf, stoneAt, stoneOf,
   withCorner, withCut, withMerged, withNewCorner, withNumber, withRing, withStone, withUse, withoutCorner,
   withoutStones,
 } from "./sketch.js";
@@ -202,7 +202,7 @@ class Page {
       const { width, height } = this.data.photo;
       if ((content.imageWidth ?? width) !== width || (content.imageHeight ?? height) !== height) throw new Error("it is of another picture");
       const state = stateOf(content);
-      this.go(state, `${state.stones.length} outlines were read from ${file.name}.`);
+      this.go(state, saidOf(content, state, file.name));
     } catch (error) {
       this.tell(`${file.name} cannot be read: ${error.message}`);
     }

@@ -34,6 +34,13 @@ export function stateOf(file) {
   return { stones, scale, ground: own.ground ?? null, next };
 }
 
+/** What is said of a file that became a state. */
+export function saidOf(file, state, name) {
+  const left = (file.shapes ?? []).length - state.stones.length;
+  const more = left ? `, and ${left} shapes were left out that are no polygons` : "";
+  return `${state.stones.length} outlines were read from ${name}${more}.`;
+}
+
 /** The file that is saved: labelme's, with more beside its own keys. */
 export function fileOf(state, photo) {
   const ordered = [...state.stones].sort((a, b) => a.id - b.id);

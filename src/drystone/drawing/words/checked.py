@@ -20,8 +20,9 @@ from drystone.physics.building import BlockMove, BuildUp
 from drystone.physics.scatter import TiltResult
 from drystone.search.closed_loop import ClosedRun
 from drystone.search.rehearsal import Groups, RehearsalRun
+from drystone.statics.model import Direction
 from drystone.verify.check import CheckReport
-from drystone.verify.claims import check_engine
+from drystone.verify.claims import check_engine, claimed_alpha
 
 PICTURE = "check.png"  # beside a plan of which something fails
 NOT_BUILT = "not built there, as a step of the plan places nothing"
@@ -31,7 +32,7 @@ NOTEWORTHY_PX = 0.01  # overlaps below this, in source px, round to nothing and 
 
 @dataclass(frozen=True, eq=False)
 class PhysicsCard:
-    """What the engine says of a plan, beside the metrics of its limit analysis.
+    """What the engine says of a plan, beside what the plan claims.
 
     `tilts` are to the left and to the right; None for a wall that fell or did not come to rest.
     """
@@ -65,13 +66,12 @@ class PhysicsCard:
             steps = ", ".join(str(self._step(group)) for group in self.built.restless)
             of = f"step{'s' if len(self.built.restless) > 1 else ''} {steps}"
             rows.append(("  restless", f"blocks still moved when the time of {of} was up"))
-        return rows + [
-            (f"  tilted to the {name}", self._tilted(name)) for name in ("left", "right")
-        ]
+        left, right = self._tilted("left"), self._tilted("right")
+        return [*rows, ("  tilted to the left", left), ("  tilted to the right", right)]
 
     def report(self) -> dict[str, Any]:
         """Return the same as JSON."""
-        furthest, moves, metrics = self._furthest(), self.built.moves, self.checked.metrics
+        furthest, moves = self._furthest(), self.built.moves
         return {
             "fallen": list(self.built.fallen),
             "first_fall": self.first_fall,
@@ -84,8 +84,8 @@ class PhysicsCard:
             "restless": [self._step(group) for group in self.built.restless],
             "tilt_left": self._alpha("left"),
             "tilt_right": self._alpha("right"),
-            "alpha_left": metrics and metrics.alpha_left,
-            "alpha_right": metrics and metrics.alpha_right,
+            "alpha_left": claimed_alpha(self.plan, "left"),
+            "alpha_right": claimed_alpha(self.plan, "right"),
             "moves": [
                 {"id": m.id, "move": m.move_px, "share": m.share, "turn_deg": m.turn_deg,
                  "overlap": m.overlap_px, "fell": m.fell}
@@ -103,8 +103,8 @@ class PhysicsCard:
         fallen, all_ = len(self.built.fallen), len(self.built.moves)
         return f"{fallen} of {all_} blocks fall, the first after step {self.first_fall}"
 
-    def _tilted(self, name: str) -> str:
-        said = f"limit analysis {number(getattr(self.checked.metrics, f'alpha_{name}', None))}"
+    def _tilted(self, name: Direction) -> str:
+        said = f"the plan claims {number(claimed_alpha(self.plan, name))}"
         if self.tilts is None:
             return f"not tilted, as it does not stand at rest; {said}"
         if self.tilts[name == "right"].fell_at_rest:

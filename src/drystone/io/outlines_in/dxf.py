@@ -43,6 +43,9 @@ _CLOSED = 1e-6
 _FLATNESS = 2e-4
 """How far chords may stay away from a curve, as a share of the size of the outline."""
 _MOST_DEGREE = 32
+_APART = "splines that say they are closed end apart ({}): a straight line joins their ends."
+_WIDE = "polylines have a width ({}): the line in its middle was read."
+"""How outlines were read that may be meant in another way."""
 
 
 class Drawn(NamedTuple):
@@ -77,6 +80,9 @@ def read_dxf(data: bytes, settings: ReadSettings) -> OutlineFile:
     named = [drawn for drawn in shown if drawn.layer.upper() == _LAYER]
     if named:
         aside["entities outside the layer STONES"] = len(shown) - len(named)
+    papers = [layout for layout in document.layouts if not layout.is_modelspace]
+    on_paper = sum(one.dxftype() in _OUTLINES for paper in papers for one in paper)
+    aside["polylines and curves in paper space"] = on_paper
     outlines = []
     room = model.MOST_CORNERS
     for drawn in named or shown:
@@ -100,10 +106,10 @@ def read_dxf(data: bytes, settings: ReadSettings) -> OutlineFile:
     ]
     cure = "Only closed outlines are read: join lines and arcs to polylines, bind references."
     notices += model.left_aside(+aside, cure) + seen
-    if open_ended := [outline.handle for outline in outlines if outline.is_open]:
-        which = f"splines that say they are closed end apart ({listed(open_ended)})"
-        text = f"{which}: a straight line was drawn between their ends."
-        notices.append(Notice("W119", text, "Draw them again if they are other curves."))
+    for doubt in (_APART, _WIDE):
+        if which := [outline.handle for outline in outlines if outline.doubt == doubt]:
+            cure = "Draw them again if another line is meant."
+            notices.append(Notice("W119", doubt.format(listed(which)), cure))
     if len(found) < len(rings):
         text = f"{len(rings) - len(found)} outlines lie in others and are their holes."
         cure = "If they are stones in a frame, put them on a layer STONES, or hide the frame."
@@ -116,7 +122,7 @@ class _Outline(NamedTuple):
     facing: Vector | None  # (3,), away from which it was drawn; None for a line in space
     name: str
     handle: str
-    is_open: bool = False  # it says that it is closed, but its ends are apart
+    doubt: str = ""  # in what other way it may be meant
 
 
 def _in_plane(
@@ -204,6 +210,7 @@ def _outline(drawn: Drawn, aside: Counter[str]) -> _Outline | None:
         if corners is None:
             aside[f"open {kind}"] += 1
             return None
+        doubt = _APART if is_open else _WIDE if getattr(entity, "has_width", False) else ""
         facing = None
         if kind != "SPLINE" and not (kind == "POLYLINE" and entity.is_3d_polyline):
             front = drawn.matrix.transform_direction(entity.dxf.get("extrusion", (0, 0, 1)))
@@ -213,7 +220,7 @@ def _outline(drawn: Drawn, aside: Counter[str]) -> _Outline | None:
         if entity.has_xdata(_APPLICATION):  # what drystone wrote
             said = [str(value) for code, value in entity.get_xdata(_APPLICATION) if code == 1000]
             name = said[0] if said else ""
-    return _Outline(corners, facing, name, handle, is_open)
+    return _Outline(corners, facing, name, handle, doubt)
 
 
 def _path_corners(drawn: Drawn) -> tuple[Vector | None, bool]:

@@ -368,12 +368,16 @@ def _fitted(box: Sequence[float], size: Sequence[float], ratio: str) -> Matrix:
     return matrix
 
 
-SEEN = frozenset(
-    {"display", "visibility", "opacity", "fill", "fill-rule", "stroke", "clip-path", "mask"}
-)
+_PAINT = {
+    "fill": "black", "fill-opacity": "1", "stroke": "none", "stroke-opacity": "1",
+    "stroke-width": "1",
+}  # fmt: skip
+"""Properties of paint, and what they are where nobody says it."""
+_ASIDE = frozenset({"clip-rule", *_PAINT}) - {"fill", "stroke"}
+"""Those that count only together with others; a rule of another kind is passed over, unless 0."""
+SEEN = frozenset({"display", "visibility", "opacity", "fill-rule", "clip-path", "mask"})
+SEEN |= _PAINT.keys() | _ASIDE
 """Properties that say whether a shape is seen, and what of it is filled."""
-_ASIDE = frozenset({"clip-rule"})
-"""Those that say so only together with others; a rule of another kind is passed over."""
 
 _MOVING = {
     "transform", "translate", "rotate", "scale", "offset", "offset-path", "zoom",
@@ -420,11 +424,11 @@ class Styles:
         for key in keys:
             for name, said in self._said.get(key, {}).items():
                 best[name] = max(said, best.get(name, said))
-        properties = {
-            name: element.get(name, "").strip() for name in SEEN | _ASIDE if element.get(name)
-        }
+        properties = {name: element.get(name, "").strip() for name in SEEN if element.get(name)}
         properties |= {name: value for name, (_, value) in best.items()}
         properties |= declared(element.get("style", ""))
+        # Words may be in capitals, but those of links are names.
+        properties = {k: v if "(" in v else v.lower() for k, v in properties.items()}
         # The size of the page by its style is how a window shows it.
         shaping = _MOVING if kind in {"svg", "g"} else _MOVING | _SIZES
         for name in sorted(shaping & properties.keys()):
@@ -446,19 +450,20 @@ def declared(body: str) -> dict[str, str]:
 def _rules(text: str, condition: str) -> Iterator[tuple[str, Mapping[str, str]]]:
     """Yield the simple selectors of a sheet with what they say of shapes."""
     text = _COMMENT.sub("", text)
-    at_rule = re.search(r"@(?!font-face|charset|namespace)[\w-]+", text)
+    at_rule = re.search(r"@(?!font-face|charset|namespace|import)[\w-]+", text)
     condition = condition or (at_rule[0] if at_rule else "")
     for prelude, body in _RULE.findall(text):
-        said = {k: v for k, v in declared(body).items() if k in SEEN | _ASIDE | _MOVING | _SIZES}
+        said = {k: v for k, v in declared(body).items() if k in SEEN | _MOVING | _SIZES}
         selectors = [one.strip() for one in prelude.rpartition(";")[2].split(",")]
         if not said or selectors == ["@font-face"]:
             continue
         for selector in selectors:
             if condition or not selector or not _SIMPLE.fullmatch(selector):
                 what = (condition or selector)[:30]
-                if not said.keys() - _ASIDE:
+                telling = [k for k, v in said.items() if k not in _ASIDE or _is_0(v)]
+                if not telling:
                     continue
-                first = min(said.keys() - _ASIDE)
+                first = min(telling)
                 cure = f"{PLAIN}, with attributes instead of styles."
                 raise ValueError(f"its style sheet says {first} for {what!r}. {cure}")
             yield selector.removeprefix("*") if selector[1:] else selector, said
@@ -474,9 +479,10 @@ _HIDDEN = frozenset(
      "style", "script", "linearGradient", "radialGradient", "filter", "namedview"}
 )  # fmt: skip
 _GROUPS = frozenset({"g", "a", "switch"})
+_CONDITIONS = {"requiredExtensions", "systemLanguage"}
 _LABEL = "{http://www.inkscape.org/namespaces/inkscape}label"
 _XLINK = "{http://www.w3.org/1999/xlink}href"
-_SHEET = b"<?xml-stylesheet"
+_SHEETS = (b"<?xml-stylesheet", b"@import")
 _LAYER = "stones"
 _UNSEEN = "elements that are hidden"
 _MOST_TEXT = 2_000_000
@@ -495,7 +501,12 @@ _ALL = 1.0 - 1e-9
 """Share of a shape that is all of it."""
 _VISIBLE = {"visible": True, "hidden": False, "collapse": False}
 
-_UNPAINTED = {"none", "transparent"}
+_CLEAR = re.compile(
+    r"none|transparent|#[\da-f]{3}0|#[\da-f]{6}00"
+    r"|[a-z]++\((?:(?:[^,]*+,){3}|[^/]*+/)\s*+[.0]++%?\s*+\)",
+    re.IGNORECASE,
+)
+"""Colours of alpha 0, which is after three commas or a slash."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -510,8 +521,7 @@ class _Place:
     group: str = ""
     depth: int = 0
     visible: bool = True
-    fill: str = "black"
-    stroke: str = "none"
+    paint: Mapping[str, str] = field(default_factory=lambda: _PAINT)
     clip: Any = None  # a planar shape outside of which nothing is; None when there is none
     clipping: bool = False  # what is drawn is a clip path, and its paint does not count
 
@@ -556,7 +566,7 @@ def read_svg(data: bytes, settings: ReadSettings) -> OutlineFile:
     said = walk.clipped.items()
     notices += [Notice("W119", f"{what}: {listed(of)}.", cure) for what, of in said if of]
     notices += page.notices
-    if _SHEET in data:
+    if any(sheet in data for sheet in _SHEETS):
         text = "a style sheet in another file was not read, whatever it hides or moves."
         notices.append(Notice("W119", text, "Put it into the drawing, in an element style."))
     return OutlineFile(stones, page.unit_m, size_px=size, notices=notices)
@@ -567,7 +577,8 @@ class _Walk:
         self.root, self.view = root, view
         self.styles = Styles(root)
         self.aside: Counter[str] = Counter()
-        self.known = {e.get("id"): e for e in root.iter() if e.get("id")}
+        # Of two with one id the first is meant.
+        self.known = {e.get("id"): e for e in [*root.iter()][::-1] if e.get("id")}
         self.count = 0
         self.left = {_TEXT: most_text, _CLIPPED: _MOST_CLIPPED}
         self.left[model.TOO_MANY_CORNERS] = model.MOST_CORNERS
@@ -595,13 +606,13 @@ class _Walk:
         what = f"the {kind} {name!r}" if name else f"a {kind}"
         with entry(what):
             style = self.styles.of(element)
-            if _vanishes(style):
+            if style.get("display") == "none" or _is_0(style.get("opacity", "1")):
                 self.aside[_UNSEEN] += 1
             elif kind in SHAPES:
                 yield from self._shape(element, self._within(element, place, style))
             elif kind in _GROUPS:
                 here = self._within(element, place, style)
-                for child in element:
+                for child in self._met(element) if kind == "switch" else element:
                     yield from self._draw(child, here)
             elif kind == "use":
                 here = self._within(element, place, style)
@@ -619,6 +630,16 @@ class _Walk:
                 raise ValueError(f"a {kind} in a clip path is not read. {PLAIN}")
             else:
                 self.aside[kind] += 1
+
+    def _met(self, switch: ET.Element) -> Sequence[ET.Element]:
+        """Return what of a switch is drawn: its first child without a condition, if there is one.
+
+        Which stones there are does not depend on the language of who reads them.
+        """
+        ways = [child for child in switch if tag(child) not in _HIDDEN]
+        drawn = [way for way in ways if _CONDITIONS.isdisjoint(way.keys())][:1]
+        self.aside[_UNSEEN] += len(ways) - len(drawn)
+        return drawn
 
     def _clip(self, style: Mapping[str, str], matrix: Matrix, place: _Place) -> Any:
         """Return where an element is there: a planar shape, or None for everywhere.
@@ -717,14 +738,13 @@ class _Walk:
             group=(own[1] or own[0] or place.group) if tag(element) == "g" else place.group,
             depth=place.depth + 1,
             visible=_VISIBLE.get(style.get("visibility", ""), place.visible),
-            fill=style.get("fill", place.fill),
-            stroke=style.get("stroke", place.stroke),
+            paint={name: style.get(name, said) for name, said in place.paint.items()},
             clip=self._clip(style, matrix, place),
         )
 
     def _shape(self, element: ET.Element, place: _Place) -> Iterator[_Shape]:
-        kind, filled = tag(element), place.clipping or place.fill not in _UNPAINTED
-        if not place.visible or not (filled or place.stroke not in _UNPAINTED):
+        kind, filled = tag(element), place.clipping or self._shows(place.paint, "fill")
+        if not place.visible or not (filled or self._shows(place.paint, "stroke")):
             self.aside[_UNSEEN] += 1
             return
         lines = lines_of(kind, element.attrib, self.view)
@@ -746,6 +766,15 @@ class _Walk:
         elif area.rings:
             self.aside[f"{kind} without an area"] += 1
 
+    def _shows(self, paint: Mapping[str, str], what: str) -> bool:
+        """Tell whether the fill or the stroke is seen."""
+        colour, link = paint[what], _LINK.match(paint[what])
+        if link:
+            # What stands after it counts where the gradient is not there.
+            colour = "" if link[2] in self.known else colour[link.end() :].strip() or "none"
+        shares = (said for name, said in paint.items() if name.startswith(f"{what}-"))
+        return not (_CLEAR.fullmatch(colour) or any(map(_is_0, shares)))
+
 
 def _no_clip(why: str) -> InputError:
     return unusable(f"clip paths cannot be used ({why})")
@@ -757,11 +786,7 @@ def _covers(shape: _Shape, page: tuple[float, float]) -> bool:
     return bool((ring.min(axis=0) <= slack).all() and (ring.max(axis=0) >= page - slack).all())
 
 
-def _vanishes(style: Mapping[str, str]) -> bool:
-    """Tell what is hidden with all that is in it."""
-    if style.get("display") == "none":
-        return True
-    try:
-        return float(style.get("opacity", "1").removesuffix("%")) <= 0.0
-    except ValueError:
-        return False
+def _is_0(text: str) -> bool:
+    """Tell an opacity or a width of nothing; what is no number is none."""
+    found = _LENGTH.fullmatch(text)
+    return found is not None and float(found[1]) <= 0.0
