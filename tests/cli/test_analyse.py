@@ -92,9 +92,14 @@ def test_loads(tower, tmp_path, run):
         assert (report["alpha_left"], report["alpha_right"]) == pytest.approx(alphas)
     run("analyse", tower, "--dead", "1@0.5,4:0,-2", "-o", tmp_path / "out")
     assert "carries 0.375 times its own weight sideways" in shown(tmp_path / "out")["summary"]
+    # Forces at points go as they are given, which is told first, and have no F_LR.
+    asked = ("analyse", tower, "--load", "points", "--live", "1@1,4:1,-1", "--associative-only")
+    said = run(*asked).out
+    assert 0 < said.index("load as given") < said.index("load reversed")
+    assert ("F_LR" in said, run(*asked, "--json").json()["F_LR"]) == (False, None)
     # One that no load brings down stands.
     ran = run("analyse", tower, "--load", "points", "--live", "1@0,3:0,-1", "--associative-only")
-    assert (ran.code, "own weight         stands\n" in ran.out) == (0, True)
+    assert (ran.code, ran.out.count("stands\n")) == (0, 1)
     assert ("unbounded" in ran.out, "W302" in ran.err) == (True, False)
 
 
@@ -360,7 +365,7 @@ def test_the_report_holds_the_card_and_needs_nothing_else(tmp_path, run):
     assert (report["unit"], [part["id"] for part in report["parts"]]) == ("m", [1, 2, 3, 4])
     assert rows["own weight"] == "stands"
     assert rows["load case"] == "tilting table, dead forces (3@30,20:0,-2)"
-    assert rows["with mu = 0.4"].startswith("load multipliers: left 0.")
+    assert rows["with mu = 0.4"].startswith("load multipliers: to the left 0.")
     assert hashlib.sha256(wall.read_bytes()).hexdigest() in rows["cite"]
     text = (folder / "report.html").read_text(encoding="utf-8")
     assert "://" not in text.replace("http://www.w3.org/", "")
@@ -372,6 +377,86 @@ def test_friction_of_blocks_that_do_not_touch_is_named(tmp_path, run):
     path = written(tmp_path / "b.json", box(0, 0, 1, 1), box(0, 1, 1, 1), friction=pairs)
     said = run("analyse", path).err
     assert "W306 blocks do not touch, so their friction is left aside: 0 and 2. Correct" in said
+
+
+@pytest.fixture
+def drawn(monkeypatch):
+    """Figures that an analysis draws, which are not written."""
+    figures = []
+    monkeypatch.setattr(analysis, "save", lambda figure, _: figures.append(figure))
+    monkeypatch.setattr(analysis, "save_mechanism_animation", lambda *_, **__: None)
+    monkeypatch.setattr(analysis, "write_report", lambda *_, **__: None)
+    return figures
+
+
+def test_pictures_say_which_way_forces_at_points_go(tower, tmp_path, run, drawn):
+    asked = ("--associative-only", "--load", "points", "--live", "1@1,4:1,0")
+    run("analyse", tower, *asked, "-o", tmp_path / "out")
+    said = [text.get_text() for figure in drawn for text in figure.axes[0].texts]
+    for way in ("as given", "reversed"):
+        assert way in drawn[-1].axes[0].get_legend_handles_labels()[1]
+        assert f"point loads {way}, $\\alpha$ = 0.500" in said
+
+
+@pytest.mark.parametrize(("friction", "own", "f_lr"), [
+    ({}, None, 1.0),
+    ({(2, 1): 0.2}, "1 of 2 joints, mu = 0.2", 1.0),
+    ({(1, 0): 0.2}, "1 of 2 joints, mu = 0.2", 1.0),
+    ({(2, 1): 0.2, (1, 0): 0.45}, "2 of 2 joints, mu = 0.2 to 0.45", None),
+])  # fmt: skip
+def test_friction_of_their_own_is_said_and_that_no_joint_takes_an_option(
+    tmp_path, run, drawn, friction, own, f_lr
+):
+    """Two beds without a head joint.  The whole wall slides at mu where the ground has no other."""
+    pairs = [{"between": between, "mu": mu} for between, mu in friction.items()]
+    path = written(tmp_path / "own.json", box(0, 0, 4, 1), box(0, 1, 4, 1), friction=pairs)
+    asked = ("analyse", path, "--associative-only", "--mu", "0.1")
+    ran = run(*asked, "--mu-head", "0.3", "--json", "-o", tmp_path / "out")
+    idle = "--mu-head or --mu" if f_lr is None else "--mu-head"
+    assert f"W309 no joint takes its friction from {idle}. Joints keep" in ran.err
+    told = ran.json()
+    assert told["remarks"] == ({"own friction": own} if own else {})
+    assert told["F_LR"] == (f_lr and pytest.approx(told["alpha_left"] / 0.1))
+    (axes,) = (one for figure in drawn for one in figure.axes if one.get_ylabel())
+    sliding = "the whole wall slides" in axes.get_legend_handles_labels()[1]
+    assert sliding == ((1, 0) not in friction)
+    ran = run(*asked)
+    assert (("not defined: every joint has" in ran.out), "W309" in ran.err) == (f_lr is None,) * 2
+    assert "W309" not in run(*asked[:3]).err
+    ran = run(*asked[:3], "--mu", ".3:.9", "--scatter", "2")
+    assert ("E138 --mu: samples would not differ" in ran.err) == (f_lr is None)
+
+
+def test_forces_far_from_their_block_are_named_with_the_unit_of_points(tmp_path, run):
+    """The same wall in px, in metres that are read as px, and as a block model in metres."""
+    labels, picture = np.ones((60, 80), np.uint32), tmp_path / "wall.png"
+    labels[:20, :40], labels[:20, 40:] = 2, 0
+    write_labels(labels, picture)
+    shapes = box(0, 0, 8, 4), box(0, 4, 4, 2)
+    ring = [[*corners, corners[0]] for corners in (np.array(one).tolist() for one in shapes)]
+    kinds = [{"type": "Polygon", "coordinates": [one]} for one in ring]
+    features = [{"type": "Feature", "id": i, "geometry": one} for i, one in enumerate(kinds, 1)]
+    drawing = {"type": "FeatureCollection", "unit": "m", "features": features}
+    drawn = tmp_path / "wall.geojson"
+    drawn.write_text(json.dumps(drawing), encoding="utf-8")
+    model = written(tmp_path / "wall.json", *shapes)
+    to_scale = ("--px-per-m", 10)
+    for path, more, box_at, unit in (
+        (picture, (), "stone 2: x 0 to 40, y 40 to 60", "px, y up"),
+        (drawn, to_scale, "stone 2: x 0 to 40, y 40 to 60", "px, 10 to a metre, y up"),
+        (model, (), "block 2: x 0 to 4, y 4 to 6", "lengths of the block model, y up"),
+    ):
+        size = 4 if path == model else 40
+        for x, far in ((size, False), (1.05 * size, False), (1.1 * size, True), (size / 9, True)):
+            y = size if x > size / 2 else 11 * size
+            ran = run(
+                "analyse", path, *more, "--associative-only", "--load", "points",
+                "--live", f"2@{x:g},{y:g}:1,0",
+            )  # fmt: skip
+            said = (
+                f"W310 forces act far from their blocks: 2@{x:g},{y:g} ({box_at}). Give points in"
+            )
+            assert (f"{said} {unit}" in ran.err, "W310" in ran.err) == (far, far), ran.err
 
 
 @pytest.mark.parametrize("command", ["analyse", "craft"])
@@ -399,3 +484,17 @@ def test_the_friction_of_head_joints_in_the_options_wins_over_that_of_the_file(t
     asked = ("analyse", model, "--json", "--associative-only")
     oiled, given = run(*asked, "--mu-head", "0").json(), run(*asked).json()
     assert oiled["alpha_right"] < given["alpha_right"] - 1e-3
+
+
+def test_the_order_in_which_a_file_has_blocks_and_joints_changes_nothing(settled, tmp_path, run):
+    """Without dilatancy the search would go another way."""
+    content = json.loads((settled / "blocks.json").read_text())
+    turned = {**content, **{key: content[key][::-1] for key in ("blocks", "interfaces")}}
+    assert turned != content
+    model = tmp_path / "turned.json"
+    model.write_text(json.dumps(turned))
+    given, other = (
+        run("analyse", path, "--json").json() for path in (settled / "blocks.json", model)
+    )
+    assert other["nonassociative"] == given["nonassociative"]
+    assert other["joints"] == given["joints"]

@@ -48,7 +48,6 @@ def test_polygons_in_either_sense_with_density_and_fixed():
     assert [(b.id, b.weight, b.fixed) for b in model.blocks] == [(7, 4, True), (3, 10, False)]
     assert model_from_json({"blocks": [{**fixed, "density": 1e9}, dense]}).blocks[0].weight == 4e9
     assert told(model.interfaces) == [
-        (7, GROUND, [(0, 0), (2, 0)], (0, 1)),
         (7, 3, [(2, 2), (0, 2)], (0, -1)),
     ]
 
@@ -254,10 +253,28 @@ def test_a_bed_is_where_both_blocks_are_and_carries_the_first():
             refuse_astray(model_from_json(wrong), polygons_from_json(wrong))
 
 
-def test_what_is_fixed_may_reach_below_the_ground():
-    footing = {"id": 1, "polygon": square(0, -2), "fixed": True}
-    model = model_from_json({"blocks": [footing, {"id": 2, "polygon": square(0, 0)}]})
-    assert (2, 1) in {(face.block, face.other) for face in model.interfaces}
+@pytest.mark.parametrize(
+    ("footing", "beds"),
+    [
+        ([[0, -1], [2, -1], [2, 0], [0, 0]], {1: [0.5, 2], 0: [2, 2.5]}),
+        ([[-9, -1], [9, -1], [9, 0], [-9, 0]], {1: [0.5, 2.5]}),
+        ([[0, -1], [4, 0], [0, 0]], {1: [0.5, 2.5]}),
+        ([[1, -1], [2, -1], [2, -1e-6], [1, -1e-6]], {1: [1, 2], 0: [0.5, 1, 2, 2.5]}),
+        ([[0, -1], [2, -1], [2, -0.1], [0, -0.1]], {0: [0.5, 2.5]}),
+        ([[2.5, -1], [4, -1], [4, 1], [2.5, 1]], {1: [2.5, 2.5], 0: [0.5, 2.5]}),
+    ],
+)
+def test_what_is_fixed_in_the_ground_bears_in_its_place(footing, beds):
+    """And it does not stand on the ground itself."""
+    block = {"id": 2, "polygon": [[0.5, 0], [2.5, 0], [2.5, 2], [0.5, 2]]}
+    fixed = {"id": 1, "polygon": footing, "fixed": True}
+    found: dict[int, list[float]] = {}
+    for face in model_from_json({"blocks": [fixed, block]}).interfaces:
+        assert face.block == 2
+        found.setdefault(face.other, []).extend(face.points[:, 0].tolist())
+    assert {other: sorted(xs) for other, xs in found.items()} == {
+        other: pytest.approx(xs, abs=1e-4) for other, xs in beds.items()
+    }
 
 
 def test_points_of_an_interface_run_along_it():

@@ -281,6 +281,15 @@ def test_what_is_fixed_or_below_the_ground_is_not_pushed_by_a_load_that_grows_wi
         other_loads.growing_with_height(boxes([0, 0, 1, 2], fixed=(1,)))
 
 
+@pytest.mark.parametrize(("y", "below"), [(0, ()), (1, (2,)), (100, (2,)), (-1, (2,))])
+def test_heights_of_a_load_count_from_where_the_blocks_stand(y, below):
+    """On the ground, or on a fixed block wherever it lies."""
+    rows = [0, y + bool(below), 1, 1], [0, y, 2, 1], [0, y + 1 + bool(below), 1, 1]
+    model = boxes(*(rows if below else (rows[0], rows[2])), fixed=below)
+    pushed = other_loads.growing_with_height(model).live
+    assert pushed[[0, -1], 0].tolist() == [0.5, 1.5]
+
+
 def test_a_point_load_holds_the_block_down_it_acts_on():
     """A weight P at the top centre: (W + P) b / 2 = alpha W h / 2."""
     block = boxes([0, 0, 1, 4])
@@ -319,8 +328,10 @@ def test_a_settling_support_is_held_up_by_its_share(size, height):
 
 def test_only_a_fixed_block_can_settle():
     tower = boxes([0, 0, 1, 2], [0, 2, 1, 2])
-    with pytest.raises(InputError, match=r"E306.*not fixed.*Name a fixed one: there is none"):
+    with pytest.raises(InputError, match=r'E306.*not fixed.*Say "fixed": true of the'):
         other_loads.support_settlement(tower, 1)
+    with pytest.raises(InputError, match=r"E306.*not fixed.*Name a fixed one: 1"):
+        other_loads.support_settlement(boxes([0, 0, 1, 2], [0, 2, 1, 2], fixed=(1,)), 2)
     with pytest.raises(InputError, match=r"E306.*no block 7.*There are 1, 2"):
         point_load(tower, 7, (0, 0), (1, 0))
 
@@ -352,6 +363,18 @@ def test_a_force_that_solvers_would_leave_out_or_drown_in_is_refused():
             point_load(block, 1, (500, 1500), (force, 0))
     with pytest.raises(InputError, match=r"E308.*finite"):
         Loads(dead, dead * np.nan)
+
+
+@pytest.mark.parametrize(
+    "given", [[[0, 0, 0]], 1.0, None, np.zeros(3), np.zeros((1, 2)), np.full((1, 3), "one"), ()]
+)
+def test_loads_that_are_no_arrays_of_three_numbers_a_block_are_refused(given):
+    dead = weight(boxes([0, 0, 1, 1]))
+    for loads in ((dead, given), (given, dead)):
+        with pytest.raises(InputError, match=r"E308.*two arrays of finite numbers"):
+            Loads(*loads)
+    with pytest.raises(InputError, match=r"E308.*on 1 blocks, and 2 blocks"):
+        lateral_resistance(boxes([0, 0, 1, 1], [0, 1, 1, 1]), Loads(dead, dead))
 
 
 def test_no_alpha_may_hold_a_wall_up():

@@ -54,11 +54,11 @@ def model_from_json(data: Mapping[str, Any]) -> RigidBlockModel:
         and size, numbered from 1; or `{"blocks": [{"id", "polygon": [[x, y], ...], "density",
         "fixed", "held"}, ...], "mu"}`, where density is 1 and fixed false unless given, and held
         lists what a guide keeps a block from: "x", "y", "turn".  Any unit of length, y up; what
-        touches y = 0 stands on the ground.  `mu` is 0.58 unless given, `"mu_head"` is that of head
-        joints, and `"friction": [{"between": [3, 1], "mu": 0.4}, ...]` that of all joints of a
-        pair (0 is the ground).  `"interfaces": [{"between": [3, 1], "points": [[x, y], ...],
-        "normal": [nx, ny], "mu"}, ...]` says where blocks touch, normals pointing into the first
-        block of a pair; without it that is found.  Other keys are ignored.
+        touches y = 0 stands on the ground, or on what is fixed in it.  `mu` is 0.58 unless given,
+        `"mu_head"` is that of head joints, and `"friction": [{"between": [3, 1], "mu": 0.4}, ...]`
+        that of all joints of a pair (0 is the ground).  `"interfaces": [{"between": [3, 1],
+        "points": [[x, y], ...], "normal": [nx, ny], "mu"}, ...]` says where blocks touch, normals
+        pointing into the first block of a pair; without it that is found.  Other keys are ignored.
 
     Returns
     -------
@@ -213,18 +213,29 @@ def _measured(block: Block, polygon: Points) -> Block:
 def _on_ground(
     corners: dict[int, Points], sizes: dict[int, float], fixed: Collection[int]
 ) -> list[Interface]:
+    """Find where free blocks touch the ground: what is fixed stands by itself, and bears first."""
     found = []
+    spans = {i: (polygon[:, 0].min(), polygon[:, 0].max()) for i, polygon in corners.items()}
+    footings = [i for i in fixed if corners[i][:, 1].min() < 0.0]
     for block, polygon in corners.items():
+        if block in fixed:
+            continue
         tolerance = RELATIVE_TOLERANCE * sizes[block]
         depth = -float(polygon[:, 1].min())
-        if depth > tolerance and block not in fixed:  # a footing may
+        if depth > tolerance:
             what = f"block {block} reaches {depth:g} below the ground, y = 0."
             cure = "Move the wall up, or say that the block is fixed."
             raise InputError("E304", what, where="block model", cure=cure)
         if depth >= -tolerance:
-            left, right = polygon[:, 0].min() - sizes[block], polygon[:, 0].max() + sizes[block]
-            ground = np.array([[right, 0.0], [left, 0.0]])
-            found += touching_interfaces(block, polygon, GROUND, ground, tolerance)
+            left, right = spans[block][0] - sizes[block], spans[block][1] + sizes[block]
+            bare: shapely.Geometry = shapely.LineString([[right, 0.0], [left, 0.0]])
+            for one in footings:
+                if spans[one][0] < right and left < spans[one][1]:
+                    risen = min(tolerance, RELATIVE_TOLERANCE * sizes[one])
+                    bare = bare.difference(shapely.Polygon(corners[one] + (0.0, risen)))
+            for low, _, high, _ in shapely.bounds(shapely.get_parts(bare)):
+                ground = np.array([[high, 0.0], [low, 0.0]])
+                found += touching_interfaces(block, polygon, GROUND, ground, tolerance)
     return found
 
 

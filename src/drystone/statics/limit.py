@@ -80,7 +80,8 @@ def lateral_resistance(
         return LateralResistance(_no_blocks("left"), _no_blocks("right"), model.mu)
     program = assemble(model, loads)
     least, greatest = extremes(model, program, solver, mechanism=mechanism)
-    return resistance_between(program, least, greatest, model.mu, mechanism=mechanism)
+    mu = 0.0 if model.mu_idle else model.mu
+    return resistance_between(program, least, greatest, mu, mechanism=mechanism)
 
 
 def load_range(model: RigidBlockModel, loads: Loads, *, solver: Solver = "auto") -> LoadRange:

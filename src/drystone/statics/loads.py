@@ -43,9 +43,12 @@ class Loads:
     tilt_deg: float = 0.0  # by which weight is turned, as in :func:`weight`
 
     def __post_init__(self) -> None:
-        if not np.isfinite([self.dead, self.live]).all():
-            what = "a load is not a finite number."
-            raise InputError("E308", what, where="loads", cure="Correct it.")
+        both = self.dead, self.live
+        numbers = [getattr(one, "dtype", np.dtype(object)).kind in "iuf" for one in both]
+        shaped = all(numbers) and self.dead.shape == self.live.shape == (*self.dead.shape[:1], 3)
+        if not shaped or not np.isfinite(both).all():
+            what = "dead and live are not two arrays of finite numbers, (n, 3)."
+            raise InputError("E308", what, where="loads", cure="Correct them.")
 
 
 def weight(model: RigidBlockModel, angle_deg: float = 0.0) -> Floats:
@@ -69,12 +72,20 @@ def growing_with_height(model: RigidBlockModel) -> Loads:
     """Weight, and a load towards +x that grows with the height above the ground.
 
     Each block is pushed by alpha w y / y_mean, with y_mean the height of the common centre of mass,
-    so that alpha is the whole push over the whole weight, as for the tilting table.  Without a free
-    block above the ground it is an InputError (E307).
+    so that alpha is the whole push over the whole weight, as for the tilting table.  Heights count
+    from the lowest point at which free blocks stand on the ground or on what is fixed.  Without a
+    free block above it it is an InputError (E307).
     """
     dead = weight(model)
-    heights = np.array([block.centroid[1] for block in model.blocks])
     free = np.array([not block.fixed for block in model.blocks], bool)
+    loose = {block.id for block in model.blocks if not block.fixed}
+    seats = [
+        face.points[:, 1].min()
+        for face in model.interfaces
+        if len(loose & {face.block, face.other}) == 1
+        and face.normal[1] * (1 if face.block in loose else -1) > 0.0
+    ]
+    heights = np.array([block.centroid[1] for block in model.blocks]) - min(seats, default=0.0)
     push = -dead[:, 1] * np.maximum(heights, 0.0)
     if not push[free].sum() > 0:
         what = "no free block lies above the ground, so no load can grow with height."
@@ -125,7 +136,10 @@ def support_settlement(model: RigidBlockModel, block: int) -> tuple[RigidBlockMo
     row, found = _block(model, block)
     if not found.fixed:
         what = f"block {block} is not fixed, so it is not a support that can settle."
-        cure = f"Name a fixed one: {_listed(b for b in model.blocks if b.fixed)}."
+        fixed = [other for other in model.blocks if other.fixed]
+        cure = f"Name a fixed one: {_listed(fixed)}."
+        if not fixed:
+            cure = 'Say "fixed": true of the support, in a block model.'
         raise InputError("E306", what, where="load case", cure=cure)
     carried = [other.weight for other in model.blocks if not other.fixed]
     # Weightless in this case: as heavy as the others, so that it does not spoil their units.

@@ -107,6 +107,11 @@ class RigidBlockModel:
         """Return the coefficient of friction of an interface, at most `NO_SLIP`."""
         return min(self.mu if interface.mu is None else interface.mu, NO_SLIP)
 
+    @property
+    def mu_idle(self) -> bool:
+        """Whether every interface has a friction of its own, so that `mu` changes nothing."""
+        return bool(self.interfaces) and all(face.mu is not None for face in self.interfaces)
+
     @cached_property
     def faces(self) -> Mapping[int, tuple[Interface, ...]]:
         """Interfaces of each block that touches anything, and those of the ground."""

@@ -127,7 +127,7 @@ class LateralResistance:
 
     left: LimitResult  # live load towards -x
     right: LimitResult
-    mu: float  # coefficient of friction
+    mu: float  # coefficient of friction; 0 where every interface has one of its own
 
     @property
     def value(self) -> float | None:

@@ -11,7 +11,7 @@ from drystone.drawing.words.modelling import ModelRequest, modelled
 from drystone.io.walls import GivenWall
 from drystone.statics.failing.mechanism import Names
 from drystone.statics.limit import lateral_resistance
-from drystone.statics.loads import LoadCase
+from drystone.statics.loads import LoadCase, Loads, point_load, weight
 from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
 from tests.contacts.test_gaps import bond
 
@@ -56,6 +56,22 @@ def test_a_wall_is_judged_in_words(blocks, more, stands, words):
     assert said.startswith(f"1 of 2 stones, {words}")
 
 
+@pytest.mark.parametrize(("force", "words"), [
+    # At the corner (1, 2) of a block 1 x 2: 2 a = 2 / 2 about the right toe, 3 a about the left.
+    ((1, -1), "0.500 times the live load (live); reversed, 0.333 times; weakest place: stone 1"),
+    ((-1, 1), "0.333 times the live load (live); reversed, 0.500 times; weakest place: stone 1"),
+    ((0, -1), "any multiple of the live load (live); reversed, 1.000 times"),
+])  # fmt: skip
+def test_a_load_that_is_not_sideways_counts_as_it_is_given(force, words):
+    model = model_from_json({"blocks_xywh": TALL, "mu": 0.6})
+    wall = ModelledWall(model, np.ones((1, 1)), Names("stone"))
+    loads = Loads(weight(model), point_load(model, 1, (1.0, 2.0), force))
+    both = lateral_resistance(model, loads, mechanism=True)
+    without = {"left": both.left.alpha, "right": both.right.alpha}
+    said = judge_wall("1 stone", wall, both, load_case="live", without_dilatancy=without)
+    assert said == (True, f"1 stone, stands; carries {words}")
+
+
 def test_what_no_solver_could_answer_is_not_judged():
     failed = LimitResult(LimitStatus.FAILED, "left")
     wall = ModelledWall(model_from_json({"blocks_xywh": TALL}), np.ones((1, 1)), Names())
@@ -64,8 +80,9 @@ def test_what_no_solver_could_answer_is_not_judged():
 
 
 def test_the_spread_says_what_the_reach_decides():
-    def spread(labels, width, mu=None):
-        asked = ModelRequest(mu, None, "pixels", width, LoadCase("tilting", 0.0, (), (), None))
+    def spread(labels, width, mu=None, live=()):
+        case = LoadCase("points" if live else "tilting", 0.0, (), live, None)
+        asked = ModelRequest(mu, None, "pixels", width, case)
         return modelled(GivenWall(labels), asked, "wall").remarks["gaps"].split("; ")[-1]
 
     labels = bond(6, 20, 38, 2)
@@ -81,5 +98,10 @@ def test_the_spread_says_what_the_reach_decides():
         f"F_LR {settled:.3f} with stones settled ({left:.3f} with stones pushed left,"
         f" {right:.3f} with stones pushed right)"
     ).replace("0.", ".")
+    # Up, a twentieth of the weight of both; down is without a limit.
+    stack = np.kron([[1], [2]], np.ones((2, 8), int))
+    for force, alpha in ("1.6", "20.000"), ("-1.6", "unbounded"):
+        said = spread(stack, "2", live=(f"2@4,1:0,{force}",))
+        assert said.startswith(f"alpha {alpha} with gaps up to 2 px closed")
     stack = np.kron([[1], [0], [2]], np.ones((2, 8), int))
     assert "F_LR not defined with gaps up to 2 px closed (unstable" in spread(stack, "2", (0, 0))

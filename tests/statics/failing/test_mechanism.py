@@ -105,6 +105,19 @@ def test_motions_in_words(rows, velocity, words):
     assert moved(velocity, *rows).words == words
 
 
+def test_a_lintel_rocks_on_two_posts_and_slides_only_where_a_joint_does():
+    """Posts of 4 and of 3, the shorter one on a block that stays."""
+    portal = boxes([0, 0, 1, 4], [4, 1, 1, 3], [0, 4, 5, 1], [4, 0, 2, 1], mu=0.9)
+    failure = told(portal)
+    assert failure.words == (
+        "Rocking of block 3 on 1 and 2; block 1 rocks about its right toe; block 2 rocks about its"
+        " right toe, on 4."
+    )
+    assert not any("sliding" in kind for kind in failure.contact_kinds)
+    (lintel,) = [group for group in failure.groups if group.blocks == (3,)]
+    assert (lintel.motion, lintel.slips) == ("mixed", False)
+
+
 @pytest.mark.parametrize(
     ("upper", "mu", "words"),
     [
@@ -191,12 +204,14 @@ def test_the_parts_of_a_description_fit_together(seed, tilted):
 
 def rocking(*blocks, toe, on, side="right"):
     point = Toe((0.0, 0.0), toe, on, side)
-    return failing.MovingGroup(blocks, "rocking", (1, 0, -1), (0, 1), 1.0, 1.0, point, (on,), True)
+    return failing.MovingGroup(
+        blocks, "rocking", (1, 0, -1), (0, 1), 1.0, 1.0, point, (on,), True, False
+    )
 
 
-def sliding(*blocks, on=(), on_bed=True, motion="sliding", turning=0.0):
+def sliding(*blocks, on=(), on_bed=True, motion="sliding", turning=0.0, slips=True):
     velocity = (1.0, 0.58, turning)
-    return failing.MovingGroup(blocks, motion, velocity, (0, 1), 1.0, 1.0, None, on, on_bed)
+    return failing.MovingGroup(blocks, motion, velocity, (0, 1), 1.0, 1.0, None, on, on_bed, slips)
 
 
 @pytest.mark.parametrize(
@@ -233,6 +248,14 @@ def test_bodies_that_move_alike_share_a_clause_and_four_are_spelled_out():
         (
             sliding(2, on=(1,), motion="mixed", turning=0.1),
             *("Rocking and sliding", "block 2", "rocks and slides", " on 1"),
+        ),
+        (  # On two bodies that both turn, and slipping on neither.
+            sliding(2, on=(1, 3), motion="mixed", turning=0.1, slips=False),
+            *("Rocking", "block 2", "tips", " on 1 and 3"),
+        ),
+        (
+            sliding(2, 4, on=(1, 3), motion="mixed", turning=0.1, on_bed=False, slips=False),
+            *("Rocking", "blocks 2 and 4", "tip", " between 1 and 3"),
         ),
         (sliding(2, on=(1, 3), motion="mixed"), "Shifting", "block 2", "shifts", " on 1 and 3"),
         (sliding(2, motion="mixed"), "Loosening", "block 2", "comes loose", ""),

@@ -196,7 +196,7 @@ def test_walls_that_carry_any_load_stand_and_failed_solves_count_neither_way(mon
 
 
 def test_what_has_no_number_has_no_quantiles():
-    """A wall that never stands, and a ratio to no friction."""
+    """A wall that never stands, and a ratio to no friction, or to one that no joint has."""
     model = boxes([0, 0, 20, 10], [19, 10, 20, 10])
     found = scatter(model, ScatterSettings(samples=4, mu=(0.4, 0.8)))
     assert (found.falling_share, len(found.alpha), found.unshaken.stable) == (1.0, 0, False)
@@ -204,6 +204,10 @@ def test_what_has_no_number_has_no_quantiles():
     found = scatter(FLAT, ScatterSettings(samples=3, mu=(0.0, 0.0)))
     assert found.alpha == pytest.approx(np.zeros(3), abs=1e-9)
     assert (found.value, found.value_quantiles) == (None, None)
+    own = replace(FLAT, interfaces=tuple(replace(face, mu=0.3) for face in FLAT.interfaces))
+    found = scatter(own, ScatterSettings(samples=3, mu=(0.4, 0.8)))
+    assert found.alpha == pytest.approx(np.full(3, 0.3))
+    assert (found.value, found.unshaken.value) == (None, None)
 
 
 @pytest.mark.parametrize(

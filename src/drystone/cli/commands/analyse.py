@@ -94,9 +94,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     wall = modelling.modelled(given, asked, arguments.wall_path)
     per_unit_m = _metres_per_unit(given, arguments)
     few = modelling.scarcity(wall, per_unit_m)
-    if few is not None:
-        wall = replace(wall, notices=(*wall.notices, few))
-    note(*wall.notices)
+    note(*wall.notices, few)
     size = modelling.size_words(wall.shapes, per_unit_m)
     if size is not None:
         wall = replace(wall, remarks={**wall.remarks, "size": size})
@@ -107,7 +105,10 @@ def run(arguments: argparse.Namespace) -> ExitCode:
         refuse_plans_own(path, written)
         prepare_files(written, overwrite=arguments.overwrite)
     model, loads = load_case(case, wall.model)
-    wall, solver = replace(wall, model=model), arguments.solver
+    far = modelling.far_forces(wall, given, case, per_unit_m)
+    note(far)
+    wall = replace(wall, model=model, notices=(*wall.notices, *filter(None, (few, far))))
+    solver = arguments.solver
     sha256 = hashlib.sha256(plan_file(path).read_bytes()).hexdigest()
     counts = counted(len(model.blocks), "block")
     card: analysis.RangeCard

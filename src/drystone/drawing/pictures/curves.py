@@ -150,25 +150,30 @@ def _legend(ax: Axes) -> None:
     )  # fmt: skip
 
 
-def plot_friction(curve: Sequence[AtFriction], mu: float, *, slides_at_mu: bool = True) -> Axes:
+def plot_friction(
+    curve: Sequence[AtFriction],
+    mu: float,
+    *,
+    slides_at_mu: bool = True,
+    sides: tuple[str, str] = ("to the left", "to the right"),
+) -> Axes:
     """Draw what a wall carries in both directions at several coefficients of friction, ascending.
 
     Where there is no load multiplier the line is broken.  `mu` is the coefficient of the analysis,
-    marked.  On a level tilting table the whole wall slides at a load multiplier of mu; that is
-    drawn too.
+    marked.  On a level tilting table the whole wall slides at a load multiplier of mu, that of the
+    ground; `slides_at_mu` draws that too.  `sides` are words for both directions.
     """
     ax = Figure(figsize=(4.2, 2.9), layout="constrained").add_subplot()
     mus = [at.mu for at in curve]
     if slides_at_mu:
         words = "the whole wall slides"
         ax.plot(mus, mus, color=GREY, linestyle="dotted", linewidth=1.0, label=words)
-    for name, colour, marker in (
-        ("left", CLUSTER_COLOURS[0], "<"),
-        ("right", CLUSTER_COLOURS[1], ">"),
+    for values, said, colour, marker in (
+        ([at.alpha_left for at in curve], sides[0], CLUSTER_COLOURS[0], "<"),
+        ([at.alpha_right for at in curve], sides[1], CLUSTER_COLOURS[1], ">"),
     ):
-        values = [getattr(at, f"alpha_{name}") for at in curve]
         drawn = [float("nan") if value is None else value for value in values]
-        ax.plot(mus, drawn, color=colour, marker=marker, markersize=5, label=f"to the {name}")
+        ax.plot(mus, drawn, color=colour, marker=marker, markersize=5, label=said)
     ax.axvline(mu, color=GREY, linewidth=0.8)
     ax.annotate(
         f"mu = {mu:g}", (mu, 0.02), xycoords=("data", "axes fraction"), fontsize=7,

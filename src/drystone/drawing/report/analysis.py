@@ -20,7 +20,7 @@ from drystone.drawing.words import analysis, content
 from drystone.drawing.words.analysis import Card, RangeCard
 from drystone.kernels.polygons import area_and_centroid
 from drystone.statics.loads import Loads
-from drystone.statics.model import RigidBlockModel
+from drystone.statics.model import GROUND, RigidBlockModel
 from drystone.statics.result import LimitResult, LimitStatus
 from drystone.statics.sensitivity import friction_curve
 from drystone.whole_files import write_whole
@@ -54,6 +54,8 @@ def write_analysis(folder: Path, card: RangeCard, loads: Loads, per_unit_m: floa
         falls = end.status is LimitStatus.UNSTABLE
         plain = falls or card.load_case.startswith(content.TILTING)
         load = "" if plain else card.load_case.split(" (")[0]
+        if load and isinstance(card, Card):
+            load += f" {content.side_words(card.load_case, side)}"
         moving = (shapes, end.mechanism, None if falls else end.direction, end.alpha)
         # The card names blocks by their ids.
         drawn = plot_mechanism(*moving, load=load, numbers=True)
@@ -70,9 +72,11 @@ def _write_report(folder: Path, card: Card, loads: Loads, per_unit_m: float | No
     wall, resistance = card.wall, card.resistance
     shapes, model = wall.shapes, wall.model
     curve = friction_curve(model, loads)
-    # On level ground that is; what is fixed may be a ramp.
+    # The whole wall does on level ground of this friction; what is fixed may be a ramp.
     level = card.load_case == content.TILTING and not any(block.fixed for block in model.blocks)
-    axes = plot_friction(curve, model.mu, slides_at_mu=level)
+    rubs = all(face.mu is None for face in model.faces.get(GROUND, ()))
+    left, right = (content.side_words(card.load_case, side) for side in ("left", "right"))
+    axes = plot_friction(curve, model.mu, slides_at_mu=level and rubs, sides=(left, right))
     save(axes.figure, folder / analysis.FRICTION)
     unit: Literal["px", "m", "units"] = "units" if wall.names.noun == "block" else "px"
     if per_unit_m is not None:
@@ -84,8 +88,8 @@ def _write_report(folder: Path, card: Card, loads: Loads, per_unit_m: float | No
         }
         shapes = {block: loop * per_unit_m for block, loop in outer.items()}
     friction = [
-        (f"with mu = {at.mu:g}", f"load multipliers: left {content.number(at.alpha_left)}, "
-         f"right {content.number(at.alpha_right)}")
+        (f"with mu = {at.mu:g}", f"load multipliers: {left} {content.number(at.alpha_left)}, "
+         f"{right} {content.number(at.alpha_right)}")
         for at in curve
         if at.alpha_left is not None or at.alpha_right is not None
     ] or [(f"with mu = {curve[0].mu:g} to {curve[-1].mu:g}", "no load multiplier")]  # fmt: skip
@@ -94,7 +98,8 @@ def _write_report(folder: Path, card: Card, loads: Loads, per_unit_m: float | No
     # What the strength of the associative analysis does not say.
     more = [
         content.ResultCard(
-            f"{content.ALPHA} {side}", f"Without dilatancy, to the {side}",
+            f"{content.ALPHA} {side}",
+            f"Without dilatancy, {content.side_words(card.load_case, side)}",
             content.number(end.alpha), "higher",
             f"Joints slide without opening (Coulomb). {end.message}",
         )

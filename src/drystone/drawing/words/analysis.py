@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from drystone.contacts.gaps import GapSweep
-from drystone.drawing.words.content import FALLS, TILTING, is_horizontal, number
+from drystone.drawing.words.content import FALLS, TILTING, is_horizontal, number, side_words
 from drystone.errors import Notice, counted
 from drystone.io.walls import GivenWall, on_ground
 from drystone.model.wall import Labels
@@ -184,12 +184,16 @@ class Card(RangeCard):
     def rows(self) -> list[tuple[str, str]]:
         """Return names and values, one a line."""
         rows = [("load case", self.load_case), ("own weight", self._standing())]
-        for side, result in self.ends.items():
+        sideways = is_horizontal(self.load_case)
+        for side, result in sorted(self.ends.items(), reverse=not sideways):
             rows += self._of_side(side, result)
         ratio = f"{number(self.resistance.value)}  min(alpha) / mu, mu = {self.wall.model.mu:g}"
-        if self.nonassociative is not None and self.nonassociative.value is not None:
+        if self.wall.model.mu_idle:
+            ratio = f"{number(None)}: every joint has a friction of its own"
+        elif self.nonassociative is not None and self.nonassociative.value is not None:
             ratio += f"; without dilatancy {self.nonassociative.value:.3f}"
-        rows.append(("F_LR", ratio))
+        if sideways:
+            rows.append(("F_LR", ratio))
         alphas = [end.alpha for end in self.ends.values() if end.alpha is not None]
         if self.stands and alphas and self.load_case == "tilting table":
             angle = degrees(atan(min(alphas)))
@@ -201,7 +205,7 @@ class Card(RangeCard):
         moving = {s: end.mechanism for s, end in self.ends.items() if end.mechanism is not None}
         return {
             **_alphas(self.ends),
-            "F_LR": self.resistance.value,
+            "F_LR": self.resistance.value if is_horizontal(self.load_case) else None,
             "stands": None if self.failed else self.stands,
             "why": self.why,
             "held_by_upright_faces": None if self.upright is None else list(self.upright),
@@ -264,7 +268,7 @@ class Card(RangeCard):
 
     def _of_side(self, side: str, result: LimitResult) -> list[tuple[str, str]]:
         """Tell the load to one side, and under it what belongs to this side."""
-        rows = [(f"load to the {side}", _alpha(result))]
+        rows = [(f"load {side_words(self.load_case, side)}", _alpha(result))]
         if self.without:
             without = self.without[side]
             words = without.message[:1].lower() + without.message[1:].rstrip(".")
@@ -456,7 +460,8 @@ def judge_wall(
 
     `subject` says how large it is, such as "28 of 30 stones".
     `without_dilatancy` are load multipliers by Coulomb's law, by direction, where they are known:
-    the least of all is what the wall is told to carry.  `loose` and `can_fall` are those of
+    the least of all is what the wall is told to carry, under loads that are not sideways the least
+    as they are given: reversed they are other loads.  `loose` and `can_fall` are those of
     :class:`Card`: what moves then, and whether the wall falls when it is let go.
     """
     if resistance.failed:
@@ -472,10 +477,17 @@ def judge_wall(
     both = [(end.alpha, str(end.direction)) for end in (resistance.left, resistance.right)]
     both += [(alpha, direction) for direction, alpha in without_dilatancy.items()]
     known = [(alpha, direction) for alpha, direction in both if alpha is not None]
+    reverse = ""
+    if not is_horizontal(load_case):
+        other = [alpha for alpha, direction in known if direction == "left"]
+        known = [one for one in known if one[1] == "right"]
+        reverse = f"; reversed, {min(other):.3f} times" if other else ""
     if not known:
-        return True, f"{subject}, stands; no load of this kind brings it down"
+        any_load = f"carries any multiple of the live load ({load_case}){reverse}"
+        words = any_load if reverse else "no load of this kind brings it down"
+        return True, f"{subject}, stands; {words}"
     alpha, direction = min(known)
-    words = f"{subject}, stands; {_load(alpha, load_case)}"
+    words = f"{subject}, stands; {_load(alpha, load_case)}{reverse}"
     if failure := loose.get(direction, failures.get(direction)):
         words += f"; weakest place: {_weakest_place(wall, failure)}"
     return True, words

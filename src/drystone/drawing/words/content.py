@@ -150,10 +150,21 @@ def load_words(load_case: str, side: str) -> str:
     >>> load_words("tilting table", "left"), load_words("point loads", "left")
     ('Horizontal load to the left', 'Live load reversed')
     """
+    along = "Live load"
     if is_horizontal(load_case):
         along = "Load along the base" if ", tilted by " in load_case else "Horizontal load"
-        return f"{along} to the {side}"
-    return "Live load as given" if side == "right" else "Live load reversed"
+    return f"{along} {side_words(load_case, side)}"
+
+
+def side_words(load_case: str, side: str) -> str:
+    """Say which way the live load acts.
+
+    >>> side_words("tilting table", "left"), side_words("point loads", "left")
+    ('to the left', 'reversed')
+    """
+    if is_horizontal(load_case):
+        return f"to the {side}"
+    return "as given" if side == "right" else "reversed"
 
 
 def dead_load(load_case: str) -> str:
@@ -195,17 +206,26 @@ def strength_cards(
     without_dilatancy: str = "",
     load_case: str = TILTING,
 ) -> tuple[ResultCard, ...]:
-    """Return what is said of a wall's strength, F_LR and alphas, under the loads of a case."""
+    """Return what is said of a wall's strength under the loads of a case: F_LR and alphas.
+
+    F_LR is of loads sideways: others are no shares of the weight, and reversed they are others.
+    """
+    sideways = is_horizontal(load_case)
     of_one = "At 1 the whole wall would slide on the ground before it comes apart."
     if load_case != TILTING:
         of_one = f"The load case is: {load_case}."
+    sides = sorted({"left": left, "right": right}.items(), reverse=not sideways)
+    lateral = ResultCard(
+        "F_LR", "Lateral resistance", number(ratio), "higher",
+        f"The smaller load multiplier over the coefficient of friction. {of_one}"
+        f"{without_dilatancy}",
+    )  # fmt: skip
     return (
-        ResultCard("F_LR", "Lateral resistance", number(ratio), "higher",
-             "The smaller load multiplier over the coefficient of friction. "
-             f"{of_one}{without_dilatancy}"),
-        *(ResultCard(f"{ALPHA} {side}", f"Load multiplier (adequacy factor) to the {side}",
+        *([lateral] if sideways else ()),
+        *(ResultCard(f"{ALPHA} {side}",
+                     f"Load multiplier (adequacy factor) {side_words(load_case, side)}",
                      number(alpha), "higher", _multiplier_means(load_case, side))
-          for side, alpha in (("left", left), ("right", right))),
+          for side, alpha in sides),
     )  # fmt: skip
 
 

@@ -7,6 +7,7 @@ from types import MappingProxyType
 from typing import Any
 
 import numpy as np
+import shapely
 
 from drystone.contacts.blocks import ImageModel, model_from_labels
 from drystone.contacts.gaps import (
@@ -19,6 +20,7 @@ from drystone.contacts.gaps import (
 from drystone.contacts.given import model_from_json, polygons_from_json, refuse_astray
 from drystone.contacts.outlines import CONTACT_TOLERANCE, model_of_traced, outlines_of_labels
 from drystone.contacts.settled import SETBACK
+from drystone.drawing.outlines import wall_regions
 from drystone.drawing.words.analysis import STONES, ModelledWall, Shapes
 from drystone.errors import InputError, Notice, UsageError, counted
 from drystone.io.files import listed
@@ -32,6 +34,9 @@ from drystone.statics.limit import lateral_resistance
 from drystone.statics.loads import LoadCase, load_case
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LateralResistance
+
+FAR = 0.1
+"""Farther from their block than this share of its size, the root of its area, forces are named."""
 
 
 @dataclass(frozen=True)
@@ -62,15 +67,39 @@ def modelled(wall: GivenWall, asked: ModelRequest, where: str) -> ModelledWall:
         found = _drawn(wall, wall.labels, mu, asked)
         found = replace(found, notices=(*wall.notices, *found.notices))
     found = replace(found, names=Names(noun, wall.wedge_ids, steps))
-    if asked.mu_head is not None:
-        if wall.blocks is None:
-            found = replace(found, model=with_head_friction(found.model, asked.mu_head))
-        said = f"friction {asked.mu_head:g}"
-        found = replace(found, remarks={**found.remarks, "head joints": said})
+    found = _rubbed(found, asked)
     if all(block.fixed for block in found.model.blocks):
         what = "there is no free block in it, so there is nothing to analyse."
         raise InputError("E303", what, where=where, cure="Give a block that is not fixed.")
     return found
+
+
+def _rubbed(wall: ModelledWall, asked: ModelRequest) -> ModelledWall:
+    """Give head joints the friction that is asked for, and say which joints have their own.
+
+    W309 for an option that no joint takes its friction from; E138 for friction that varies so.
+    """
+    model, remarks, idle = wall.model, dict(wall.remarks), []
+    own = [face.mu for face in model.interfaces if face.mu is not None]
+    if own:
+        upto = f" to {max(own):g}" if max(own) > min(own) else ""
+        joints = f"{len(own)} of {counted(len(model.interfaces), 'joint')}"
+        remarks["own friction"] = f"{joints}, mu = {min(own):g}{upto}"
+    if asked.mu_head is not None:
+        rubbed = with_head_friction(model, asked.mu_head)
+        if rubbed.interfaces == model.interfaces:  # the same objects
+            idle.append("--mu-head")
+        else:
+            model, remarks["head joints"] = rubbed, f"friction {asked.mu_head:g}"
+    if asked.mu is not None and model.mu_idle:
+        idle.append("--mu")
+        if asked.mu[0] < asked.mu[1]:
+            what = "samples would not differ in friction: every joint has one of its own."
+            raise UsageError("E138", what, where="--mu", cure="Leave it out.")
+    what = f"no joint takes its friction from {' or '.join(idle)}."
+    cure = "Joints keep what the file gives them; --mu-head is of joints nearer to upright."
+    notices = (*wall.notices, *([Notice("W309", what, cure)] if idle else ()))
+    return replace(wall, model=model, remarks=remarks, notices=notices)
 
 
 def _given(wall: GivenWall, blocks: dict[str, Any], mu: float, asked: ModelRequest) -> ModelledWall:
@@ -84,20 +113,22 @@ def _given(wall: GivenWall, blocks: dict[str, Any], mu: float, asked: ModelReque
     if asked.mu is not None:
         blocks = {**blocks, "mu": mu}
     if asked.mu_head is not None:
-        blocks = {**blocks, "mu_head": asked.mu_head}
+        blocks = {key: value for key, value in blocks.items() if key != "mu_head"}
     remarks = {}
     bare = None if wall.plan is None else wall.plan.metrics.F_LR_no_setback
     if bare is not None and asked.mu is None and asked.as_planned:
         remarks["contacts"] = f"set back; F_LR {bare:.3f} with contacts up to the ends of faces"
     model, outlines = model_from_json(blocks), polygons_from_json(blocks)
-    refuse_astray(model, outlines)
+    if "interfaces" in blocks:
+        refuse_astray(model, outlines)
     touching = {frozenset((face.block, face.other)) for face in model.interfaces}
     pairs = [one["between"] for one in blocks.get("friction", ())]
     idle = [f"{one} and {other}" for one, other in pairs if frozenset((one, other)) not in touching]
     what = f"blocks do not touch, so their friction is left aside: {listed(idle)}."
     cure = "Correct the ids, or where the blocks lie."
     notices = (*wall.notices, *([Notice("W306", what, cure)] if idle else ()))
-    return ModelledWall(model, outlines, notices=notices, remarks=remarks)
+    # What is found without dilatancy goes by the order of blocks: `plan` has them sorted.
+    return ModelledWall(model.in_order(), outlines, notices=notices, remarks=remarks)
 
 
 def _drawn(wall: GivenWall, labels: Labels, mu: float, asked: ModelRequest) -> ModelledWall:
@@ -168,18 +199,23 @@ def _with_closed_gaps(
             for width in (reach, reach / 2.0, 2.0 * reach)
         }
     chosen, *others = (
-        f"{_f_lr_words(_resistance(asked, picture.model))} with {name}"
-        for name, picture in found.items()
+        f"{_strength_words(asked, picture.model)} with {name}" for name, picture in found.items()
     )
     made = _made(wall, shown, next(iter(found.values())), moved)
-    remarks = {"gaps": f"{done}F_LR {chosen} ({', '.join(others)})"}
+    figure = "alpha" if asked.case.load == "points" else "F_LR"
+    remarks = {"gaps": f"{done}{figure} {chosen} ({', '.join(others)})"}
     return replace(made, remarks=remarks, joints="drawn")
 
 
-def _f_lr_words(both: LateralResistance) -> str:
-    if both.value is not None:
-        return f"{both.value:.3f}".removeprefix("0")
-    unknown = next((r.status for r in (both.left, both.right) if r.alpha is None), None)
+def _strength_words(asked: ModelRequest, model: RigidBlockModel) -> str:
+    """Say F_LR, or alpha of forces at points as they are given."""
+    both = _resistance(asked, model)
+    value, ends = both.value, [both.left, both.right]
+    if asked.case.load == "points":
+        value, ends = both.right.alpha, [both.right]
+    if value is not None:
+        return f"{value:.3f}".removeprefix("0")
+    unknown = next((end.status for end in ends if end.alpha is None), None)
     # Without friction F_LR, which is over mu, is not defined.
     return "not defined" if unknown is None else str(unknown)
 
@@ -290,6 +326,32 @@ def size_words(shapes: Shapes, per_unit_m: float | None) -> str | None:
         rows, cols = np.nonzero(shapes)
         width, height = float(np.ptp(cols) + 1), float(np.ptp(rows) + 1)
     return f"{width * per_unit_m:.3g} m wide, {height * per_unit_m:.3g} m high"
+
+
+def far_forces(
+    wall: ModelledWall, given: GivenWall, case: LoadCase, per_unit_m: float | None
+) -> Notice | None:
+    """Name the forces that act farther from their block than a tenth of its size (W310).
+
+    `wall` is what is made of the one `given`, and has the blocks that the case names.
+    """
+    unit = "px" if per_unit_m is None else f"px, {1.0 / per_unit_m:g} to a metre"
+    if given.blocks is not None:
+        unit = "lengths of the block model" if given.plan is None else given.plan.length_unit
+    far, forces = [], [*case.dead, *case.live]
+    shapes = {region.id: region for region in wall_regions(wall.shapes)} if forces else {}
+    for force in forces:
+        block, at = force.partition(":")[0].split("@")
+        bodies = [shapely.Polygon(loop) for loop in shapes[int(block)].loops]
+        point = shapely.Point(*map(float, at.split(",")))
+        if min(map(point.distance, bodies)) > FAR * math.sqrt(max(one.area for one in bodies)):
+            left, low, right, high = shapely.total_bounds(bodies)
+            box = f"x {left:.4g} to {right:.4g}, y {low:.4g} to {high:.4g}"
+            far.append(f"{block}@{at} ({wall.names.listed([int(block)])}: {box})")
+    if not far:
+        return None
+    what = f"forces act far from their blocks: {listed(far)}."
+    return Notice("W310", what, f"Give points in {unit}, y up from the ground.")
 
 
 def scarcity(wall: ModelledWall, per_unit_m: float | None) -> Notice | None:

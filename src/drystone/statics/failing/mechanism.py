@@ -153,6 +153,7 @@ class MovingGroup:
     """Blocks outside of the body on which it moves as `motion` says, ascending; GROUND among them.
     """
     on_bed: bool  # whether it does so on joints that bear it; False for joints at its sides
+    slips: bool  # whether it slips along one of them
 
     @property
     def momentum(self) -> float:
@@ -238,6 +239,7 @@ def _group(kin: Kinematics, body: Ints, number: int) -> MovingGroup:
         toe=toe,
         against=tuple(np.unique(kin.ids[outside[at]]).tolist()),
         on_bed=bool(bears[at].any()),
+        slips=bool(slips[at].any()),
     )
 
 
@@ -371,10 +373,11 @@ def _motion(group: MovingGroup, names: Names, falls: bool) -> tuple[str, str]:
         return "falling", ""
     if not group.against:
         return "free", ""
-    verb = "sliding"
+    verb, along = "sliding", "along" if group.slips or len(group.against) == 1 else "between"
     if group.motion == "mixed":
-        verb = "rocking and sliding" if group.velocity[2] else "carried"
-    return verb, f" {'on' if group.on_bed else 'along'} {names.place(group.against)}"
+        rocks = "rocking and sliding" if group.slips else "tipping" if falls else "rocking"
+        verb = rocks if group.velocity[2] else "carried"
+    return verb, f" {'on' if group.on_bed else along} {names.place(group.against)}"
 
 
 def _about(group: MovingGroup, names: Names) -> str:

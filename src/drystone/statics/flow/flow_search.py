@@ -289,11 +289,11 @@ class Search:
         costs = np.concatenate(([-self._sign], np.repeat(rates, 2)))
         return _state(session.minimise(costs), self._sign)
 
-    def _least_forces(self, velocity: Floats) -> tuple[FlowState, Floats] | None:
-        """Return the state of least load whose forces go with a motion, or None.
+    def _least_forces(self, velocity: Floats, way: float) -> tuple[FlowState, Floats] | None:
+        """Return the state of least alpha (way 1; -1: greatest) that goes with a motion, or None.
 
         Opening contacts are left without force, sliding ones with the edge that resists.  With it
-        comes how much alpha would fall for a unit of force on each edge (m, 2) ruled out so.
+        comes how much alpha would gain by a unit of force on each edge (m, 2) ruled out so.
         """
         fastest = float(np.abs(velocity).max())
         opens = self._rates.opening(velocity) > NOTHING * fastest
@@ -305,7 +305,7 @@ class Search:
         upper = np.where(barred, 0.0, INFINITY)
         self._forces.highs.changeColsBounds(len(columns), columns, np.zeros(len(columns)), upper)
         costs = np.zeros(1 + len(barred))
-        costs[0] = self._sign
+        costs[0] = way * self._sign
         found = self._forces.minimise(costs)
         state = _state(found, self._sign, velocity)
         if state is None:
@@ -314,15 +314,19 @@ class Search:
         return state, np.where(barred & (gain > NOTHING), gain, 0.0).reshape(-1, 2)
 
     def _descended(self, state: FlowState) -> FlowState:
-        """Improve forces and motion in turn until alpha has not fallen for some steps."""
-        stalled = 0
+        """Improve forces and motion in turn until alpha comes no nearer to 0 for some steps."""
+        stalled, way = 0, -1.0 if state.alpha < 0.0 else 1.0
         while stalled < self._settings.patience:
             self._look()
-            found = self._least_forces(state.velocity)
-            if found is None or found[0].alpha > state.alpha + NOTHING:
+            found = self._least_forces(state.velocity, way)
+            if found is None or way * (found[0].alpha - state.alpha) > NOTHING:
                 return state
             better, wanted = found
-            stalled = stalled + 1 if better.alpha > state.alpha - NOTHING else 0
+            if way * better.alpha < 0.0:  # what lies between goes with this motion too
+                share = state.alpha / (state.alpha - better.alpha)
+                edges = state.edges + share * (better.edges - state.edges)
+                return FlowState(0.0, edges, state.velocity)
+            stalled = stalled + 1 if way * (better.alpha - state.alpha) > -NOTHING else 0
             state = better
             if not wanted.any():
                 return state

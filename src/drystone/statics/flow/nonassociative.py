@@ -30,6 +30,10 @@ into the way of the forces which would lower alpha further (their reduced costs 
 hundred.  There :mod:`drystone.statics.flow.central_path` comes near an answer first, in seconds;
 one round from its slip rates closes nearly always.  It is also asked where no start has an answer.
 
+**Against the load.**  Where a load presses blocks together or lifts them off, they may move against
+it: a search that ends below 0 has an answer of the other side.  The blocks fall by themselves only
+where a motion goes with forces at alpha = 0.
+
 What is heuristic: nothing says that rounds find a solution (they run away towards motions in which
 the live load does no work), or that descent ends at the least one.  So there are several starts,
 the least of all solutions found is told, and every answer is checked from the blocks themselves.
@@ -66,11 +70,11 @@ class FlowCheck:
     closing: float  # largest rate at which a contact closes, over the largest velocity
     held: float  # largest velocity of what is fixed or held, over the largest velocity
     dilatancy: float
-    """Power of the normal forces, the sum of |n u_n|, over the power of the live load: contacts
-    open that carry a force, or dilate as they slide."""
+    """Power of the normal forces, the sum of |n u_n|, over that of the live or the dead load, the
+    greater: contacts open that carry a force, or dilate as they slide."""
     dissipation: float
-    """Sum of |t u_t + mu n |u_t||, over the power of the live load: contacts that slide without all
-    their friction, or along with it."""
+    """Sum of |t u_t + mu n |u_t||, over the same: contacts that slide without all their friction,
+    or along with it."""
 
     @property
     def holds(self) -> bool:
@@ -91,9 +95,9 @@ def check_flow(
 ) -> FlowCheck:
     """Check forces and a mechanism at alpha in a direction; at least one block is free.
 
-    The load multiplier is alpha for "right" and -alpha for "left", and the live load must do work
-    of that sign.  `forces` is (m, 2): normal and tangential force at every contact point on the
-    block that the normal points into; the tangent of a normal (x, y) is (y, -x).
+    The load multiplier is alpha for "right" and -alpha for "left".  `forces` is (m, 2): normal and
+    tangential force at every contact point on the block that the normal points into; the tangent of
+    a normal (x, y) is (y, -x).
     """
     loads = tilting_table(model) if loads is None else loads
     own, sign = units_of(model), -1.0 if direction == "left" else 1.0
@@ -112,8 +116,8 @@ def check_flow(
     leaving = np.maximum(-n, np.abs(t) - kin.friction * n)
     velocity = np.abs(kin.velocity[:-1] * units)
     fastest = float(velocity.max())
-    live = zip(loads.live[free], kin.velocity[:-1][free], strict=True)
-    power = sign * sum(load @ way for load, way in live)
+    way = kin.velocity[:-1][free]
+    power = max(abs(float((load[free] * way).sum())) for load in (loads.live, loads.dead))
     lost = sum(np.abs(t * slip + kin.friction * n * np.abs(slip)).tolist())
     return FlowCheck(
         equilibrium=float(np.abs(balance[:-1] / units)[moves].max(initial=0.0)) / own.weight,
@@ -169,8 +173,8 @@ def nonassociative_resistance(
     A direction is "optimal" when forces and motion were found whose check holds: the least alpha of
     those found, in bounded effort, an upper estimate of the least there is.  "unstable" when the
     blocks do not stand under their dead load, or only without certainty: there are forces with
-    which they start to fall, or a motion that needs less than no load.  "unbounded" when no motion
-    goes along with the load.  "failed" when nothing was found.
+    which they start to fall, or can move, under it alone.  "unbounded" when no motion goes along
+    with the load.  "failed" when nothing was found.
 
     Parameters
     ----------
@@ -192,7 +196,7 @@ def nonassociative_resistance(
     ends = both.left, both.right
     if not both.stable or all(block.fixed for block in model.blocks):
         left, right = (NonassociativeResult(e.status, e.direction, message=e.message) for e in ends)
-        return NonassociativeResistance(left, right, model.mu)
+        return NonassociativeResistance(left, right, both.mu)
     settings = settings or NonassociativeSettings()
     loads = loads or tilting_table(model)
     program = assemble(model, loads)
@@ -200,8 +204,14 @@ def nonassociative_resistance(
     if falls is not None:
         left, right = (replace(falls, direction=end.direction) for end in ends)
     else:
-        left, right = (_searched(model, loads, program, end, settings, look) for end in ends)
-    return NonassociativeResistance(left, right, model.mu)
+        searched = [_searched(model, loads, program, end, settings, look) for end in ends]
+        # A load below 0 is one of the other side, where blocks move against the live load.
+        answers = [answer for _, found in searched for answer in found]
+        left, right = (
+            _least_verified(end, nothing, [a for a in answers if a.direction == end.direction])
+            for end, (nothing, _) in zip(ends, searched, strict=True)
+        )
+    return NonassociativeResistance(left, right, both.mu)
 
 
 def _released(
@@ -236,23 +246,43 @@ def _searched(
     associative: LimitResult,
     settings: NonassociativeSettings,
     look: Callable[[], None],
-) -> NonassociativeResult:
-    direction = associative.direction
-    rounds, answers = 0, []
+) -> tuple[NonassociativeResult, list[NonassociativeResult]]:
+    """Return what to say where nothing is found, and the verified answers of both sides."""
+    direction, most = associative.direction, associative.alpha
+    rounds, answers = 0, list[NonassociativeResult]()
     sign = -1.0 if direction == "left" else 1.0
     upright = np.array([abs(interface.normal[1]) for interface in model.interfaces], float)
-    search = Search(program, sign, upright[model.contact_interfaces], settings, look)
-    if associative.alpha is None and not search.motions.exist:
-        return NonassociativeResult(LimitStatus.UNBOUNDED, direction, message=IMMOVABLE)
-    for method, needed, found in search.attempts():
-        rounds += needed
-        if found is not None:
-            alpha = 0.0 if -STANDING <= found.alpha <= 0.0 else found.alpha
+    # A share of the dead load in the live one only renames alpha, and then motions are found, too,
+    # on which the live load does no work.
+    shares = [0.0] if most is None else [0.0, 1.0 / (1.0 + 2.0 * most)]
+    for share in shares:
+        live = loads.live + sign * share * loads.dead
+        program = assemble(model, replace(loads, live=live)) if share else program
+        search = Search(program, sign, upright[model.contact_interfaces], settings, look)
+        if most is None and not search.motions.exist:
+            return NonassociativeResult(LimitStatus.UNBOUNDED, direction, message=IMMOVABLE), []
+        for method, needed, found in search.attempts():
+            rounds += needed
+            scale = 0.0 if found is None else 1.0 + share * found.alpha
+            if found is None or scale <= 0.0:
+                continue
+            alpha = found.alpha / scale
+            alpha = 0.0 if -STANDING <= alpha <= 0.0 else alpha
             # The forces are admissible with associated flow too: what is above is rounding.
-            most = alpha if associative.alpha is None else associative.alpha
-            state = replace(found, alpha=min(alpha, most))
-            answers.append(_answer(model, loads, direction, program, state, method))
-    return _least_verified(direction, associative.alpha, rounds, answers)
+            alpha = alpha if most is None else min(alpha, most)
+            state = FlowState(alpha, found.edges / scale, found.velocity)
+            answer = _answer(model, loads, direction, program, state, method)
+            if answer.check and answer.check.holds:
+                answers.append(answer)
+        if any(answer.direction == direction for answer in answers):
+            break
+    message = f"The search did not converge in {rounds} rounds; " + (
+        "with associated flow no load is too great."
+        if most is None
+        else f"the load multiplier lies at or below the associative one, {most:.5g}."
+    )
+    failed = NonassociativeResult(LimitStatus.FAILED, direction, rounds=rounds, message=message)
+    return failed, answers
 
 
 def _answer(
@@ -263,44 +293,38 @@ def _answer(
     state: FlowState,
     method: str,
 ) -> NonassociativeResult:
-    """Check a state, in the units of the model."""
+    """Check a state, in the units of the model and the direction of its load."""
     mechanism, forces = program.mechanism(state.velocity), program.forces(state.edges)
+    alpha = abs(state.alpha)
+    if state.alpha < 0.0:
+        direction = "right" if direction == "left" else "left"
     return NonassociativeResult(
         LimitStatus.OPTIMAL,
         direction,
-        state.alpha,
+        alpha,
         mechanism,
         forces,
         method=method,
-        check=check_flow(model, loads, direction, state.alpha, mechanism, forces),
+        check=check_flow(model, loads, direction, alpha, mechanism, forces),
     )
 
 
 def _least_verified(
-    direction: Direction,
-    associative: float | None,
-    rounds: int,
-    answers: list[NonassociativeResult],
+    associative: LimitResult, nothing: NonassociativeResult, verified: list[NonassociativeResult]
 ) -> NonassociativeResult:
-    """Choose the least of the verified answers; of equal ones the first."""
-    verified = [(a.alpha, a) for a in answers if a.alpha is not None and a.check and a.check.holds]
+    """Choose the least of the verified answers, of equal ones the first; else say `nothing`."""
     if not verified:
-        message = f"The search did not converge in {rounds} rounds; " + (
-            "with associated flow no load is too great."
-            if associative is None
-            else f"the load multiplier lies at or below the associative one, {associative:.5g}."
-        )
-        return NonassociativeResult(LimitStatus.FAILED, direction, rounds=rounds, message=message)
-    least, best = min(verified, key=lambda one: round(one[0], 9))
-    alphas = tuple(sorted(alpha for alpha, _ in verified))
-    found = replace(best, rounds=rounds, answers=alphas)
+        return nothing
+    best = min(verified, key=lambda answer: round(answer.alpha or 0.0, 9))
+    alphas = tuple(sorted(answer.alpha or 0.0 for answer in verified))
+    least, most = alphas[0], alphas[-1]
+    found = replace(best, rounds=nothing.rounds, answers=alphas)
     count = f"{len(verified)} solutions"
-    if least >= 0.0:
-        upto = f"; range {least:.4f} to {alphas[-1]:.4f}" if alphas[-1] - least > 5e-5 else ""
+    if least > STANDING or (associative.alpha is not None and associative.alpha <= STANDING):
+        upto = f"; range {least:.4f} to {most:.4f}" if most - least > 5e-5 else ""
         return replace(found, message=f"Lowest of {count}{upto}.")
     message = (
-        "Without dilatancy the blocks can move this way under their dead load alone, even against"
-        f" a load of {-least:.4f}. Other forces would hold them:"
-        f" {count} reach up to {alphas[-1]:.4f}."
+        "Without dilatancy the blocks can move this way under their dead load alone. Other forces"
+        f" would hold them: {count} reach up to {most:.4f}."
     )
     return replace(found, status=LimitStatus.UNSTABLE, alpha=None, message=message)

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csc_array
 
+from drystone.errors import InputError
 from drystone.kernels.cones import GROUND_BODY, cone_edges
 from drystone.statics.loads import Loads, tilting_table
 from drystone.statics.model import FREEDOMS, GROUND, RigidBlockModel
@@ -130,6 +131,9 @@ def assemble(
     contact point is spanned by the forces normal +- mu tangent.
     """
     loads = tilting_table(model) if loads is None else loads
+    if len(loads.dead) != len(model.blocks):
+        what = f"there are loads on {len(loads.dead)} blocks, and {len(model.blocks)} blocks."
+        raise InputError("E308", what, where="loads", cure="Give one row for each block.")
     places = [i for i, block in enumerate(model.blocks) if not block.fixed]
     free = [model.blocks[i] for i in places]
     units = units_of(model) if units is None else units

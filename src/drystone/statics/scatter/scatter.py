@@ -166,7 +166,7 @@ class Scatter:
     status: tuple[LimitStatus, ...]  # (n,): of every sample: "optimal" when both directions are
     mu: Floats
     """(n,): coefficient of friction of every sample; the mean over the interfaces that draw one
-    when each has its own."""
+    when each has its own; 0 where those of the model all have one, which stays."""
     alpha_left: Floats
     """(number of optimal samples,): load multipliers of the walls that stand, in the order of the
     samples."""
@@ -264,7 +264,8 @@ def _analysed(
     both = lateral_resistance(wall)
     ends = both.left.status, both.right.status
     worst = (status for status in reversed(LimitStatus) if status in ends)
-    return next(worst), wall.mu, both.left.alpha, both.right.alpha
+    mu = 0.0 if model.mu_idle else wall.mu
+    return next(worst), mu, both.left.alpha, both.right.alpha
 
 
 def _quantiles(values: Floats | None) -> Quantiles | None:
