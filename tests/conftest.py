@@ -2,9 +2,6 @@
 
 import os
 import signal
-import sys
-import tomllib
-from importlib.metadata import entry_points
 from pathlib import Path
 
 import pytest
@@ -21,30 +18,6 @@ settings.register_profile(
     suppress_health_check=[HealthCheck.too_slow],
 )
 settings.load_profile("repeatable")
-
-
-@pytest.fixture(autouse=True, scope="session")
-def _commands_of_the_lab(tmp_path_factory):
-    """Make the entry points of pyproject.toml known to an installation that is older than they."""
-    group = "drystone.commands"
-    project = Path(__file__).resolve().parents[1] / "pyproject.toml"
-    written = tomllib.loads(project.read_text(encoding="utf-8"))["project"]["entry-points"][group]
-    if {entry.name for entry in entry_points(group=group)} >= set(written):
-        yield
-        return
-    place = tmp_path_factory.mktemp("site")
-    about = place / "commands_of_the_lab-0.dist-info"
-    about.mkdir()
-    name = "Metadata-Version: 2.1\nName: commands-of-the-lab\nVersion: 0\n"
-    (about / "METADATA").write_text(name, encoding="utf-8")
-    lines = [f"[{group}]", *(f"{command} = {value}" for command, value in written.items())]
-    (about / "entry_points.txt").write_text("\n".join(lines) + "\n", encoding="utf-8")
-    with pytest.MonkeyPatch.context() as patch:
-        sys.path.append(str(place))
-        before = os.environ.get("PYTHONPATH")
-        patch.setenv("PYTHONPATH", os.pathsep.join(filter(None, (before, str(place)))))
-        yield
-        sys.path.remove(str(place))
 
 
 @pytest.fixture(autouse=True)

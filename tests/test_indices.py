@@ -13,7 +13,6 @@ from drystone.indices import (
     geometrical_dice_score_at,
     interlocking_width_ratio,
     inward_slope,
-    is_boundary,
     joints_below,
     left_neighbour,
     local_filling_ratio_at,
@@ -75,12 +74,6 @@ def test_of_equals_the_higher_neighbour_and_the_first_joint_are_taken():
     landscape = Landscape(occupied, (one, other))
     assert joints_below(landscape, Box(15, 40, 10, 20), 0)[0] == one
     assert joints_below(landscape, Box(15, 40, 8, 11), 0) == (None, None)
-
-
-def test_boundary_stones_are_nearer_to_an_end_than_the_narrowest_is_wide():
-    empty = Landscape.of(Wall.empty(Site(40, 20)))
-    for left, right, near in ((0, 5, True), (4, 9, True), (5, 9, False), (31, 36, True)):
-        assert is_boundary(empty, Box(left, right, 0, 3), narrowest_px=5) is near
 
 
 def test_names_are_those_of_the_paper_and_boundary_stones_are_judged_by_is():

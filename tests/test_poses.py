@@ -3,7 +3,6 @@
 import math
 import threading
 from concurrent.futures import ThreadPoolExecutor
-from itertools import product
 
 import numpy as np
 import pytest
@@ -33,22 +32,12 @@ def test_initial_angle_maximises_shape_factor_over_whole_degrees(mask):
     assert abs(angle) == min(abs(a) for a in level)
 
 
-def test_quarter_turns_of_a_pose_are_exact_and_not_mirrored():
-    for scale, quarters in product((1.0, 0.5), range(4)):
-        source = np.kron(L_MASK, np.ones((4, 4), bool))
-        posed = PoseBook(scale).pose(Stone(1, source), 90.0 * quarters)
-        reduced = np.kron(L_MASK, np.ones((int(4 * scale), int(4 * scale)), bool))
-        assert np.array_equal(posed.mask, np.rot90(reduced, quarters))
-
-
 @repeatable(40)
 @given(blobs(max_px=30), st.floats(-180, 180), st.sampled_from([1.0, 0.5, 0.3, 0.2]))
-def test_a_pose_keeps_its_area_within_one_percent_or_two_px_and_its_shape(mask, angle, scale):
+def test_a_pose_keeps_its_area_within_one_percent_or_two_px(mask, angle, scale):
     posed = PoseBook(scale).pose(Stone(5, mask), angle)
     area = int(mask.sum()) * scale**2
     assert abs(posed.area_px - area) <= max(0.01 * area, 2.0)
-    assert [(a * 64).is_integer() for a in posed.anchor] == [True, True]
-    assert shape_factor(posed) == pytest.approx(indices.shape_factor(mask, angle))
 
 
 @repeatable(40)
@@ -76,6 +65,7 @@ def test_a_pose_is_the_first_of_sixteen_positions_with_the_right_area(stone, ang
     )
     x, y = min(x for x, _ in pixels), min(y for _, y in pixels)
     assert posed.anchor == (phase[0] - x, phase[1] - y)
+    assert shape_factor(posed) == pytest.approx(indices.shape_factor(mask, angle))
     rows, cols = np.nonzero(posed.mask[::-1])
     assert {(x + c, y + r) for r, c in zip(rows.tolist(), cols.tolist(), strict=True)} == pixels
 

@@ -53,7 +53,6 @@ class RealPhoto:
 
 _FILE = tomllib.loads((Path(__file__).parent / "photographs/real.toml").read_text("utf-8"))
 
-
 PHOTOS, COMPOSITES = (
     tuple(RealPhoto(**photo) for photo in _FILE[name]) for name in ("photos", "composites")
 )

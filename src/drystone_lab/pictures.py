@@ -13,7 +13,7 @@ from matplotlib.patches import Rectangle
 from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 from scipy.stats import rankdata
 
-from drystone.drawing.canvas import add, draw_block, fit_axes
+from drystone.drawing.canvas import add, draw_block, fit_axes, name_axes
 from drystone.drawing.drawing import GROUND, MARGIN
 from drystone.drawing.drawing import ground as ground_below
 from drystone.drawing.outlines import label_regions
@@ -37,13 +37,6 @@ SPREAD = 0.28
 
 GroupValues = Sequence[float | None]
 """A figure of several walls; None where a wall has none, which is left out."""
-
-
-def name_axes(ax: Axes, across: str, up: str) -> None:
-    """Write what is drawn at both axes of a chart."""
-    ax.set_xlabel(across, fontsize=8)
-    ax.set_ylabel(up, fontsize=8)
-    ax.tick_params(labelsize=7)
 
 
 def panel_sheet(

@@ -37,7 +37,6 @@ LENGTH, TILTED_MU = 0.9, 0.58
 SHORTEST = 0.04
 """Bends and ends of joints are at least this far apart along a bed; the wall is 1 high."""
 
-
 TiltedWall = tuple[Points, ...]
 """A wall of height 1 on flat ground whose joints follow no grid: corners of stone 1, 2, ...
 

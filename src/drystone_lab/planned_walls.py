@@ -17,7 +17,7 @@ from drystone.model.plan import Plan
 from drystone.model.stone import StoneSet
 from drystone.model.wall import Wall
 from drystone.physics.building import BuildUp, build_up, tilt_of
-from drystone.physics.scatter import TiltComparison, compare_with_tilt, usual_variations
+from drystone.physics.scatter import compare_with_tilt, usual_variations
 from drystone.physics.scene import EngineScene
 from drystone.statics.flow.nonassociative import nonassociative_resistance
 from drystone.statics.limit import lateral_resistance
@@ -28,7 +28,7 @@ from drystone.verify.lengths import plan_settings
 from drystone.verify.outlines import plan_polygons
 from drystone.verify.replay import replay_plan
 from drystone_lab.runs.outcome import execute
-from drystone_lab.table import BENCH, BenchSettings, Cell, Table, worded
+from drystone_lab.table import BENCH, BenchSettings, Cell, Rows, Table, worded
 from drystone_lab.walls import BRICKS, IR, JUDGED, PR, R, Target
 
 SETS = (PR, R, IR)
@@ -124,9 +124,8 @@ class EngineWall(NamedTuple):
     stones: int  # in it
     built: BuildUp
     alphas: tuple[float | None, float | None]  # load multipliers of the plan
-    tilts: tuple[
-        float | None, float | None
-    ]  # tangents at which it comes down; None when it fell before, or never
+    # tangents at which it comes down; None when it fell before, or never
+    tilts: tuple[float | None, float | None]
 
 
 def run_engine(settings: BenchSettings) -> tuple[Table, ...]:
@@ -199,34 +198,29 @@ def run_tilted(settings: BenchSettings) -> tuple[Table, ...]:
     return (worded(words, rows, more=more, counted=counted),)
 
 
-def _tilted_rows(wall: PlannedWall, settings: BenchSettings) -> list[tuple[Cell, ...]]:
+def _tilted_rows(wall: PlannedWall, settings: BenchSettings) -> Rows:
     outlines = outlines_of_labels(wall.after[-1].labels)
     variations = usual_variations()
-    compared = compare_with_tilt(
+    for one in compare_with_tilt(
         EngineScene(outlines, wall.mu),
         model_of_traced(outlines, wall.mu),
         np.random.default_rng(settings.seed),
         variations=variations[:1] if settings.quick else variations,
-    )
-    return [_tilted_row(wall.name, one) for one in compared]
-
-
-def _tilted_row(name: str, one: TiltComparison) -> tuple[Cell, ...]:
-    simulated = one.simulated
-    motion, fall = simulated.interval("first motion"), simulated.interval("fall")
-    predicted = one.nonassociative
-    inside = predicted is not None and motion is not None and motion[0] <= predicted <= motion[1]
-    # Trials that fall at rest would make the scatter as wide as one likes.
-    inside = inside and not simulated.fell_at_rest
-    both_fall = one.associative is None and simulated.fell_at_rest
-    why = "falls" if one.associative is None else "not certain to stand"
-    return (
-        name, simulated.direction, one.associative,
-        why if one.associative is None or predicted is None else predicted,
-        "falls at rest" if simulated.fell_at_rest else _interval(motion),
-        BOTH_FALL if both_fall else "yes" if inside else "no",
-        _interval(fall), simulated.settled_shift,
-    )  # fmt: skip
+    ):
+        simulated, predicted = one.simulated, one.nonassociative
+        motion, fall = simulated.interval("first motion"), simulated.interval("fall")
+        inside = predicted is not None and motion and motion[0] <= predicted <= motion[1]
+        # Trials that fall at rest would make the scatter as wide as one likes.
+        inside = inside and not simulated.fell_at_rest
+        both_fall = one.associative is None and simulated.fell_at_rest
+        why = "falls" if one.associative is None else "not certain to stand"
+        yield (
+            wall.name, simulated.direction, one.associative,
+            why if one.associative is None or predicted is None else predicted,
+            "falls at rest" if simulated.fell_at_rest else _interval(motion),
+            BOTH_FALL if both_fall else "yes" if inside else "no",
+            _interval(fall), simulated.settled_shift,
+        )  # fmt: skip
 
 
 def _interval(found: tuple[float, float] | None) -> str:

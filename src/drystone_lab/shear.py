@@ -74,7 +74,6 @@ SERIES = tuple(
     for series in _FILE["series"]
 )
 
-
 FRICTION = 0.62
 """Of sawn stone on stone, and of the beam on it; assumed for both stones."""
 

@@ -433,12 +433,7 @@ def test_forces_far_from_their_block_are_named_with_the_unit_of_points(tmp_path,
     labels[:20, :40], labels[:20, 40:] = 2, 0
     write_labels(labels, picture)
     shapes = box(0, 0, 8, 4), box(0, 4, 4, 2)
-    ring = [[*corners, corners[0]] for corners in (np.array(one).tolist() for one in shapes)]
-    kinds = [{"type": "Polygon", "coordinates": [one]} for one in ring]
-    features = [{"type": "Feature", "id": i, "geometry": one} for i, one in enumerate(kinds, 1)]
-    drawing = {"type": "FeatureCollection", "unit": "m", "features": features}
-    drawn = tmp_path / "wall.geojson"
-    drawn.write_text(json.dumps(drawing), encoding="utf-8")
+    drawn = labelled.written(tmp_path, "dxf", [("s", one * (1000, -1000)) for one in shapes])
     model = written(tmp_path / "wall.json", *shapes)
     to_scale = ("--px-per-m", 10)
     for path, more, box_at, unit in (

@@ -17,7 +17,7 @@ from drystone.cli import main
 from drystone.cli.commands import generate
 from drystone.cli.commands import stones as command
 from drystone.cli.parser import GROUP, STUDIES, build_parser, found_commands
-from drystone.errors import ExitCode, UsageError
+from drystone.errors import UsageError
 from drystone.kernels.backend import describe
 from tests.statics.walls import stacked
 
@@ -52,19 +52,6 @@ def test_errors_become_exit_codes(raised, code, said, run, monkeypatch):
     if code == 70:
         with pytest.raises(ZeroDivisionError):
             run("stones", "x.png", "--debug")
-
-
-def test_termination_ends_with_its_own_code(run, monkeypatch):
-    before = signal.getsignal(signal.SIGTERM)
-
-    def stop(_):
-        with pytest.raises(KeyboardInterrupt):
-            signal.raise_signal(signal.SIGTERM)
-        return ExitCode.INTERRUPTED
-
-    monkeypatch.setattr(command, "run", stop)
-    assert run("stones", "x.png").code == 143
-    assert signal.getsignal(signal.SIGTERM) == before
 
 
 def test_a_cure_names_options_that_the_command_has(run, monkeypatch, tmp_path):

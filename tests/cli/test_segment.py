@@ -84,18 +84,10 @@ def quickly_planned(run, stones, out, *more):
     return run("plan", stones, *size, "-o", out, *more)
 
 
-def test_a_damaged_photograph_is_refused_before_the_search(run, tmp_path, bare):
-    out, wall = tmp_path / "out", tmp_path / "wall"
-    ran = run("segment", bare, "-o", out)
-    assert ("not known" in ran.out, "No scale given" in ran.err) == (True, True)
-    assert json.loads((out / "stones.json").read_text())["px_per_m"] is None
-    (out / "photo.jpg").write_bytes(b"no picture")
-    quickly_planned(run, out, wall, "--wall", "640x320").refused("E189", exit_code=3)
-    assert not wall.exists()
-
-
-def test_one_file_has_one_median_stone_and_its_photograph(run, tmp_path, bare):
-    out, wall, mine = (tmp_path / name for name in ("out", "wall", "mine"))
+def test_one_file_has_one_median_stone_and_its_photograph_which_may_not_be_damaged(
+    run, tmp_path, bare
+):
+    out, wall, mine, none = (tmp_path / name for name in ("out", "wall", "mine", "none"))
     for folder, name in ((out, "note.txt"), (mine, "photo.jpg")):
         folder.mkdir()
         (folder / name).write_text("mine")
@@ -118,6 +110,13 @@ def test_one_file_has_one_median_stone_and_its_photograph(run, tmp_path, bare):
     assert ((out / "photo.jpg").read_bytes(), (out / "note.txt").read_text()) == (photo, "mine")
     assert "data:image/jpeg" in (out / "report.html").read_text(encoding="utf-8")
     assert "photo" not in json.loads((out / "plan.json").read_text())["source"]
+    # A damaged one is refused before the search, here of stones without a scale.
+    ran = run("segment", bare, "-o", out, "--overwrite")
+    assert ("not known" in ran.out, "No scale given" in ran.err) == (True, True)
+    assert json.loads((out / "stones.json").read_text())["px_per_m"] is None
+    (out / "photo.jpg").write_bytes(b"no picture")
+    quickly_planned(run, out, none, "--wall", "640x320").refused("E189", exit_code=3)
+    assert not none.exists()
 
 
 def test_what_is_no_photograph_of_stones_is_doubtful_first_and_by_its_exit_code(run, tmp_path):

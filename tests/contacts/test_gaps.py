@@ -15,7 +15,8 @@ from drystone.contacts.blocks import model_from_labels
 from drystone.contacts.given import model_from_json, polygons_from_json
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import GROUND
-from tests.naive.gaps import distance, lies_between
+from tests.naive.gaps import lies_between
+from tests.naive.raster import polygon_of
 from tests.statics.walls import alphas, brick_model
 from tests.strategies import repeatable
 
@@ -112,7 +113,7 @@ def test_closing_keeps_stones_and_joins_only_those_within_reach(labels, reach):
         assert hole or lies_between(stones, row, col) or lies_between(others, row, col)
     for one, other in pairs(model_from_labels(closed).model):
         if other != GROUND:
-            assert distance(labels, one, other) <= reach
+            assert polygon_of(labels == one).distance(polygon_of(labels == other)) <= reach
 
 
 def test_pushed_stones_touch_their_neighbours():

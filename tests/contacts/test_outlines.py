@@ -24,15 +24,6 @@ from tests.statics.walls import alphas, irregular, told
 from tests.strategies import repeatable
 
 
-def area(outline):
-    x, y = outline.T
-    return (x[:-1] @ y[1:] - x[1:] @ y[:-1]) / 2
-
-
-def edges_of(outline):
-    return {(tuple(a), tuple(b)) for a, b in pairwise(outline.tolist())}
-
-
 def test_areas_of_published_stones_are_those_of_their_pixels(data_dir):
     stones = read_stones(data_dir / "almeida" / "PR.png")
     labels = np.zeros((stones.source.height_px, stones.source.width_px), np.uint32)
@@ -43,15 +34,15 @@ def test_areas_of_published_stones_are_those_of_their_pixels(data_dir):
     outlines = outlines_of_labels(labels)
     assert set(outlines) == {stone.id for stone in stones}
     for stone in stones:
-        assert area(outlines[stone.id]) == pytest.approx(stone.area_px, rel=1e-3)
+        assert area_and_centroid(outlines[stone.id])[0] == pytest.approx(stone.area_px, rel=1e-3)
 
 
 def test_a_tilted_joint_is_one_edge_with_its_slope():
     row, col = np.mgrid[:60, :80]
     slope = np.tan(np.radians(7))
     outlines = outlines_of_labels(np.where(59.5 - row > 20.3 + slope * col, 2, 1))
-    (joint,) = edges_of(outlines[1]) & {(b, a) for a, b in edges_of(outlines[2])}
-    (x0, y0), (x1, y1) = joint
+    first, second = ({*pairwise(map(tuple, outlines[i].tolist()))} for i in (1, 2))
+    (((x0, y0), (x1, y1)),) = first & {(b, a) for a, b in second}
     assert np.degrees(np.arctan((y1 - y0) / (x1 - x0))) == pytest.approx(7, abs=0.2)
     assert y0 + (40 - x0) * (y1 - y0) / (x1 - x0) == pytest.approx(20.3 + slope * 39.5, abs=0.1)
 
@@ -103,7 +94,7 @@ def test_every_id_has_a_closed_outline_of_about_its_area(labels):
         assert np.abs(np.diff(outline, axis=0)).max(axis=1).min() > 0
         pieces = measure.label(labels == block, connectivity=1)
         largest = np.bincount(pieces.ravel())[1:].max()
-        assert area(outline) > largest / 2
+        assert area_and_centroid(outline)[0] > largest / 2
     assert len(model_of_traced(outlines).blocks) == len(outlines)
 
 
@@ -130,8 +121,8 @@ def test_gaps_up_to_the_tolerance_are_contacts():
 MU = 0.58
 
 
-def model_of(*polygons, mu=MU, tolerance=0.1, setback=0.0):
-    return model_of_outlines(list(enumerate(polygons, start=1)), mu, tolerance, setback)
+def model_of(*polygons, setback=0.0):
+    return model_of_outlines(list(enumerate(polygons, start=1)), MU, 0.1, setback)
 
 
 def settled_wall(seed, loose, lean):
@@ -197,9 +188,9 @@ def set_back(polygons, setback=0.01):
     return model_of(*polygons, setback=setback)
 
 
-def strength(polygons, setback=0.01):
+def strength(polygons):
     """F_LR; 0 where the wall falls by itself."""
-    found = lateral_resistance(set_back(polygons, setback))
+    found = lateral_resistance(set_back(polygons))
     assert not found.failed
     return found.value or 0.0
 

@@ -89,10 +89,8 @@ def named(masonry):
 @pytest.mark.parametrize("factor", [1.0, 250.0])
 @pytest.mark.parametrize(("wedge", "words"), [
     (box(1, 1, 0.5, 0.3), ""),
-    (box(1, 1, 0.5, 0.082), "6.098 times as wide as thick, at most 5"),
     (box(1, 1, 0.28, 0.06), "0.03 thick, at least 0.032"),
     (box(1, 1, 0.18, 0.17), "0.09 wide, at least 0.096"),
-    (box(1, 1, 0.3, 0.33), "1.1 times as high as wide, at most 1"),
     (box(1, 1, 0.7, 0.62), "0.31 high, at most 0.3"),
     (box(1, 1, 1.2, 0.59), "0.177 in area, at most 0.144"),
     ([[1, 1.1], [1.5, 1], [1.5, 1.4], [1, 1.19]], "34.1° between its faces, at most 30.1°"),

@@ -10,17 +10,13 @@ from hypothesis import strategies as st
 from drystone.craft import CraftSettings, Masonry
 from drystone.craft.bond import bond_faults
 from drystone.kernels.polygons import turn
-from drystone.metrics.frame import frame_wall
-from drystone.metrics.shape import flush_deviation, level_deviation
 from tests.craft.walls import (
-    PX,
     both,
     box,
     courses,
     find,
     mirrored,
     open_joints,
-    painted,
     running_bond,
     stack_bond,
 )
@@ -267,19 +263,6 @@ def test_a_recessed_brick_at_an_end_is_named_and_nothing_else():
                          [2, 1.05]])  # fmt: skip
     found = find("flush_ends", Masonry(loops))
     assert (found.number, found.cases) == (0.0, ())
-
-
-def test_without_open_joints_top_and_ends_are_those_of_measure():
-    loops = courses([[2.0, 3.0, 2.0], [1.0, 4.0, 1.5], [3.0, 3.0]])
-    loops |= {20: box(0, 3, 2.5, 1), 21: box(2.5, 3, 2.0, 0.25)}
-    labels, wall = painted(loops), Masonry(loops)
-    frame = frame_wall(labels)
-    heights = [np.ptp(loop[:, 1]) * PX for loop in loops.values()]
-    widths = [np.ptp(loop[:, 0]) * PX for loop in loops.values()]
-    level = level_deviation(frame.labels, float(np.mean(heights)))
-    flush = flush_deviation(frame, float(np.mean(widths)))
-    assert find("level_top", wall).number == pytest.approx(level, abs=0.01)
-    assert find("flush_ends", wall).number == pytest.approx(flush, abs=0.01)
 
 
 FOOT = {1: box(0, 0, 2, 1), 2: box(2.6, 0, 2, 1)}

@@ -8,12 +8,7 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 from scipy import ndimage
 
-from drystone.drawing.outlines import (
-    label_regions,
-    stands_on_ground,
-    wall_outlines,
-    wall_regions,
-)
+from drystone.drawing.outlines import label_regions, stands_on_ground, wall_outlines, wall_regions
 from drystone.verify.outlines import plan_polygons
 from tests.naive import plotting as naive
 from tests.polygons import box

@@ -89,9 +89,8 @@ def test_jobs_change_nothing_and_files_come_back(tmp_path):
 def test_pixels_are_those_of_the_header():
     for kind in ("PNG", "GIF", "BMP"):
         Image.new("L", (70, 30)).save(data := io.BytesIO(), kind)
-        assert (
-            pixels_of({"a": data.getvalue(), "b": b"of nothing that has pixels, and long"}) == 2100
-        )
+        case = {"a": data.getvalue(), "b": b"of nothing that has pixels, and long"}
+        assert pixels_of(case) == 2100
 
 
 @pytest.mark.parametrize("one", FORMATS, ids=lambda one: one.name)

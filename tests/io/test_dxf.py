@@ -59,15 +59,11 @@ def drawn(place="top", kind="LWPOLYLINE", code=6, unit=1.0, version="R2010"):
     return document
 
 
-def dxf(tmp_path, *what, **options):
-    return saved(drawn(*what, **options), tmp_path)
-
-
 @pytest.mark.parametrize("place", PLACES)
 def test_dxf_in_every_plane(tmp_path, place):
     """Where nobody asks for a side, it is the one that the outlines face."""
     for kind in ("POLYLINE", "LWPOLYLINE"):
-        path = dxf(tmp_path, place, kind)
+        path = saved(drawn(place, kind), tmp_path)
         stones = read_stones(path, settings=replace(METRIC, up=PLACES[place][2]))
         close(stones)
         assert "the drawing is seen along" in said(stones)
@@ -109,10 +105,10 @@ def test_dxf_units(tmp_path):
         document.header["$INSUNITS"] = code
         assert read_dxf(text_of(document), ReadSettings()).unit_m == pytest.approx(unit_m)
     with pytest.raises(InputError, match=r"E114 .*is beyond 1e9"):
-        read_stones(dxf(tmp_path, code=6, unit=1e-12), settings=METRIC)
+        read_stones(saved(drawn(code=6, unit=1e-12), tmp_path), settings=METRIC)
     for code in (-1, 25, 999):
         with pytest.raises(InputError, match=r"E116 .*\$INSUNITS is .*--unit mm"):
-            read_stones(dxf(tmp_path, code=code))
+            read_stones(saved(drawn(code=code), tmp_path))
 
 
 def test_dxf_with_a_wrong_unit(tmp_path):
@@ -123,7 +119,7 @@ def test_dxf_with_a_wrong_unit(tmp_path):
         (6, "cm", 1e-2, 1),
         (19, "in", 0.0254, 1),
     ):
-        path = dxf(tmp_path, "front", code=code, unit=metres)
+        path = saved(drawn("front", code=code, unit=metres), tmp_path)
         stones = read_stones(path, settings=replace(PIECES if unit == "px" else METRIC, unit=unit))
         close(stones)
         assert stones.source.px_per_m == (None if unit == "px" else PX_PER_M)
@@ -214,10 +210,6 @@ def curves(tmp_path, *makers):
     return [stone.area_px for stone in stones], said(stones)
 
 
-def area(points):
-    return shapely.Polygon(points).area
-
-
 def test_dxf_splines_that_say_they_are_closed(tmp_path):
     angles = np.arange(12) * (math.pi / 6)
     around = np.column_stack([100 * np.cos(angles), 100 * np.sin(angles)]).tolist()
@@ -235,12 +227,12 @@ def test_dxf_splines_that_say_they_are_closed(tmp_path):
         space.add_open_spline(ROUND).dxf.flags = 1
 
     areas, text = curves(tmp_path, fit, lambda space: fit(space, [*around, around[0]]), periodic)
-    known = [math.pi * 1e4, math.pi * 1e4, area(cubic(ROUND))]
+    known = [math.pi * 1e4, math.pi * 1e4, shapely.Polygon(cubic(ROUND)).area]
     assert areas == pytest.approx(known, rel=2e-3)
     assert "apart" not in text
     areas, text = curves(tmp_path, clamped)
     ends_apart = [point.xyz[:2] for point in ezdxf.math.BSpline(ROUND).approximate(500)]
-    assert areas == pytest.approx([area(ends_apart)], rel=2e-3)
+    assert areas == pytest.approx([shapely.Polygon(ends_apart).area], rel=2e-3)
     assert "end apart" in text.partition("a straight line joins")[0]
     with pytest.raises(InputError, match=r"E104 .*1 open SPLINE"):
         curves(tmp_path, lambda space: fit(space, flags=0))
@@ -280,7 +272,7 @@ def test_dxf_points_that_shape_a_polyline_are_not_drawn(tmp_path, in_space):
         vertex.dxf.flags |= flag
     settings = ReadSettings(px_per_m=1000, unit="mm")
     (stone,) = read_stones(saved(document, tmp_path), settings=settings)
-    assert stone.area_px == pytest.approx(area(cubic(ROUND)), rel=2e-3)
+    assert stone.area_px == pytest.approx(shapely.Polygon(cubic(ROUND)).area, rel=2e-3)
 
 
 def test_damaged_dxf(tmp_path):

@@ -155,7 +155,7 @@ def test_items_of_a_nesting_instance(tmp_path):
     assert "taken as px" not in str(found.notices)
 
 
-def test_json_of_another_kind(tmp_path):
+def test_json_of_another_kind_or_in_no_length(tmp_path):
     for content, text in (
         ("{", r"cannot be read, it may be cut short"),
         ({"type": ["object", "null"]}, r"its keys are 'type'"),
@@ -167,6 +167,11 @@ def test_json_of_another_kind(tmp_path):
     ):
         with pytest.raises(InputError, match=rf"E113 stones.json: .*{text}"):
             read(tmp_path, content)
+    crs = {"properties": {"name": "urn:ogc:def:crs:OGC:1.3:CRS84"}}
+    for changes, text in (({"crs": crs}, "degrees"), ({"unit": "parsec"}, "'parsec' is not known"),
+                          ({"unit": None}, "None is not known")):  # fmt: skip
+        with pytest.raises(InputError, match=rf"E116 .*{text}"):
+            read(tmp_path, geojson(**changes))
 
 
 def shape(**changes):
@@ -186,9 +191,8 @@ CVAT = "<annotations><image>{}</image></annotations>"
 RUNS = '<mask left="0" top="0" width="3" height="3" rle="1,2"/>'
 
 
-@pytest.mark.parametrize(
-    ("content", "text"),
-    [
+def test_damaged_entries_are_named(tmp_path):
+    for content, text in (
         (shape(points=[*box(1, 1, 30, 30), ["a", 2]]), r"shape 0.*could not convert"),
         (shape(points=[*box(1, 1, 30, 30), [float("nan"), 2]]), r"shape 0.*not finite"),
         (shape(shape_type="circle", points=[[1, 2]]), r"shape 0"),
@@ -214,14 +218,12 @@ RUNS = '<mask left="0" top="0" width="3" height="3" rle="1,2"/>'
         ("0 .1 .1 .2 .2 .3\n0 .1 .1 .2 .1 .2 .2 .4\n", "line 2.*odd number.*save_conf"),
         (CVAT.format("<box/>"), "shape 0.*'xtl'"),
         (CVAT.format(RUNS), "shape 0.*do not fill"),
-    ],
-)  # fmt: skip
-def test_damaged_entries_are_named(tmp_path, content, text):
-    name = "a.json"
-    if isinstance(content, str):
-        name = "a.xml" if content.startswith("<") else "a.txt"
-    with pytest.raises(InputError, match=rf"E114 {name}: .*{text}"):
-        read(tmp_path, content, name)
+    ):  # fmt: skip
+        name = "a.json"
+        if isinstance(content, str):
+            name = "a.xml" if content.startswith("<") else "a.txt"
+        with pytest.raises(InputError, match=rf"E114 {name}: .*{text}"):
+            read(tmp_path, content, name)
 
 
 def test_sam_of_several_images_and_files_that_name_none(tmp_path):
@@ -234,14 +236,6 @@ def test_sam_of_several_images_and_files_that_name_none(tmp_path):
     for none in (labelme(), [{"segmentation": [[1, 1, 30, 1, 30, 30]]}], geojson()):
         with pytest.raises(UsageError, match=r"E118 stones.json: .*'tray'.*Leave --image"):
             read(tmp_path, none, image="tray")
-
-
-def test_geojson_in_no_length(tmp_path):
-    crs = {"properties": {"name": "urn:ogc:def:crs:OGC:1.3:CRS84"}}
-    for changes, text in (({"crs": crs}, "degrees"), ({"unit": "parsec"}, "'parsec' is not known"),
-                          ({"unit": None}, "None is not known")):  # fmt: skip
-        with pytest.raises(InputError, match=rf"E116 .*{text}"):
-            read(tmp_path, geojson(**changes))
 
 
 def test_no_stones_or_none_inside_the_image_and_a_name_that_is_not_unicode(tmp_path):

@@ -22,20 +22,16 @@ from tests.io.pictures import areas, codes, said, two_stones
 LIMIT = 10**6
 
 
-def palette(values, kind):
-    """A picture of indices whose colours all look the same."""
-    image = Image.fromarray(values)
-    image.putpalette([0, 0, 0, *[9] * 765])
-    image.save(buffer := io.BytesIO(), kind)
-    return buffer.getvalue()
-
-
 def test_ids_of_8_16_and_32_bits_survive(tmp_path):
     small = two_stones(7, 255, np.uint8)
-    files = [(255, palette(small, kind)) for kind in ("PNG", "TIFF", "BMP")]
     # GIF: keep unused colours
     kinds = ("PNG", "TIFF", "BMP", "GIF")
-    files += [(255, pillow(small, kind, optimize=False)) for kind in kinds]
+    files = [(255, pillow(small, kind, optimize=False)) for kind in kinds]
+    indices = Image.fromarray(small)  # whose colours all look the same
+    indices.putpalette([0, 0, 0, *[9] * 765])
+    for kind in kinds[:3]:
+        indices.save(buffer := io.BytesIO(), kind)
+        files.append((255, buffer.getvalue()))
     files += [(65535, pillow(two_stones(7, 65535, np.uint16), "PNG"))]
     files += [(top, tiff(two_stones(7, top))) for top in (65535, 70000, 2**32 - 1)]
     for top, data in files:
@@ -60,28 +56,30 @@ def written(folder, data):
     return folder / "a.any"
 
 
-def test_colours_are_ids(tmp_path):
+def test_colours_are_ids_unless_they_have_16_bits_and_are_no_greys(tmp_path):
     stones = read_stones(written(tmp_path, pillow(colours(two_stones()), "PNG")))
     assert areas(stones) == {300: 375, 70000: 600}
     (notice,) = stones.notices
     assert notice.code == "W115"
     assert "3 colours read as ids R + 256 G + 65536 B: 2 stones." in notice.message
+    values = np.dstack([two_stones(7, 300, np.uint16)] * 3)
+    assert areas(read_stones(values)) == {7: 375, 300: 600}
+    values[0, 0, 0] = 9
+    with pytest.raises(InputError, match=r"E108.*outside 0 ... 255"):
+        read_stones(values)
 
 
-@pytest.mark.parametrize(
-    "array",
-    [
+def test_arrays_and_npy(tmp_path):
+    for array in (
         two_stones(), two_stones().astype(np.int64), two_stones().astype(np.float64),
         np.asfortranarray(two_stones()), two_stones()[None], two_stones()[:, :, None],
         two_stones().astype(">u4"), two_stones().astype(np.uint64), colours(two_stones()),
-    ],
-)  # fmt: skip
-def test_arrays_and_npy(tmp_path, array):
-    np.save(tmp_path / "a.npy", array)
-    for source in (array, tmp_path / "a.npy", str(tmp_path / "a.npy")):
-        stones = read_stones(source)
-        assert areas(stones) == {300: 375, 70000: 600}
-        assert (stones.source.width_px, stones.source.height_px) == (60, 40)
+    ):  # fmt: skip
+        np.save(tmp_path / "a.npy", array)
+        for source in (array, tmp_path / "a.npy", str(tmp_path / "a.npy")):
+            stones = read_stones(source)
+            assert areas(stones) == {300: 375, 70000: 600}
+            assert (stones.source.width_px, stones.source.height_px) == (60, 40)
 
 
 def test_source_names_the_bytes(tmp_path):
@@ -95,51 +93,38 @@ def test_source_names_the_bytes(tmp_path):
     assert read_stones(array).source.sha256 == read_stones(array.copy()).source.sha256
 
 
-def test_colours_of_16_bits_are_greys_or_no_ids():
-    values = np.dstack([two_stones(7, 300, np.uint16)] * 3)
-    assert areas(read_stones(values)) == {7: 375, 300: 600}
-    values[0, 0, 0] = 9
-    with pytest.raises(InputError, match=r"E108.*outside 0 ... 255"):
-        read_stones(values)
-
-
 NOISY = np.random.default_rng(0).integers(0, 9, (60, 60)).astype(np.uint8)
 TWO = np.stack([NOISY, NOISY])
 PAGES = {"save_all": True, "append_images": [Image.fromarray(NOISY[::-1])]}
 HEIGHTS = [struct.pack("<HHII", 257, 4, 1, height) for height in (60, 99)]
-REFUSED = [
-    (b"", "E106 a.png: .*0 bytes"),
-    (b"%PDF-1.7", "E107 a.png: .*PNG, TIFF, BMP, GIF, NPY, NPZ; JSON"),
-    (b"PK\x03\x04...", "E107 a.png: .*PNG"),
-    *((pillow(NOISY, kind)[:-size], "E106 a.png: .*damaged or cut short")
-      for kind in ("PNG", "BMP", "GIF", "TIFF") for size in (300, 1000)),
-    (png_of(8, 6, 1, 0, bytes(5 * 2)), "E106 .*all of its rows"),
-    (png_of(8, 6, 2, 3, bytes(5 * 3), bytes(12)), "E106 .*all of its rows"),
-    (png_of(8, 6, 16, 0, bytes(5 * 17)), "E106 .*all of its rows"),
-    (png_of(8, 6, 8, 6, bytes(5 * 33)), "E106 .*all of its rows"),
-    (tiff(NOISY, compression="deflate").replace(*HEIGHTS), "E106 .*all of its strips"),
-    (npy(NOISY)[:-1], "E106"),
-    (npy(NOISY)[:20], "E106"),
-    (npy(np.array([{}, {}])), "E107.*pickle"),
-    (png_of(2, 2, 16, 2, bytes(26)), "E107.*16 bits a colour channel"),  # and not halved
-    (pillow(NOISY, "GIF", **PAGES), "E109.*where one picture is needed"),
-    (pillow(NOISY, "TIFF", **PAGES), "E109.*where one picture is needed"),
-    (tiff(TWO, photometric="minisblack"), "E109.*where one picture is needed"),
-    (npy(TWO), "E109.*where one picture is needed"),
-    (png_of(100_000, 50_000, 8, 0, bytes(9)), r"E110.*100000 x 50000 px are 5000 million.*200 mil"
-     r"lion.*crop it; only in Python .* raised \(max_image_mpx\)\.$"),
-]  # fmt: skip
 
 
-@pytest.mark.parametrize(("data", "text"), REFUSED)
-def test_bytes_that_are_refused(tmp_path, data, text):
-    (tmp_path / "a.png").write_bytes(data)
-    with pytest.raises(InputError, match=text) as caught:
-        read_stones(tmp_path / "a.png")
-    assert caught.value.where == "a.png"
-
-
-def test_files_that_are_absent_or_beyond_a_limit_of_pixels_that_is_a_setting(tmp_path):
+def test_files_that_are_refused_for_their_bytes_their_absence_or_a_limit(tmp_path):
+    for data, text in (
+        (b"", "E106 a.png: .*0 bytes"),
+        (b"%PDF-1.7", "E107 a.png: .*PNG, TIFF, BMP, GIF, NPY, NPZ; JSON"),
+        (b"PK\x03\x04...", "E107 a.png: .*PNG"),
+        *((pillow(NOISY, kind)[:-size], "E106 a.png: .*damaged or cut short")
+          for kind in ("PNG", "BMP", "GIF", "TIFF") for size in (300, 1000)),
+        (png_of(8, 6, 1, 0, bytes(5 * 2)), "E106 .*all of its rows"),
+        (png_of(8, 6, 2, 3, bytes(5 * 3), bytes(12)), "E106 .*all of its rows"),
+        (png_of(8, 6, 16, 0, bytes(5 * 17)), "E106 .*all of its rows"),
+        (png_of(8, 6, 8, 6, bytes(5 * 33)), "E106 .*all of its rows"),
+        (tiff(NOISY, compression="deflate").replace(*HEIGHTS), "E106 .*all of its strips"),
+        (npy(NOISY)[:-1], "E106"),
+        (npy(NOISY)[:20], "E106"),
+        (npy(np.array([{}, {}])), "E107.*pickle"),
+        (png_of(2, 2, 16, 2, bytes(26)), "E107.*16 bits a colour channel"),  # and not halved
+        *((data, "E109.*where one picture is needed") for data in (
+            pillow(NOISY, "GIF", **PAGES), pillow(NOISY, "TIFF", **PAGES),
+            tiff(TWO, photometric="minisblack"), npy(TWO))),
+        (png_of(100_000, 50_000, 8, 0, bytes(9)), r"E110.*100000 x 50000 px are 5000 million.*200 "
+         r"million.*crop it; only in Python .* raised \(max_image_mpx\)\.$"),
+    ):  # fmt: skip
+        (tmp_path / "a.png").write_bytes(data)
+        with pytest.raises(InputError, match=text) as caught:
+            read_stones(tmp_path / "a.png")
+        assert caught.value.where == "a.png"
     with pytest.raises(InputError, match=r"E100.*no such file"):
         read_stones(tmp_path / "b.png")
     for data in (tiff(NOISY), pillow(NOISY, "BMP"), npy(NOISY)):
@@ -195,7 +180,7 @@ def test_an_orientation_turns_a_mask_with_its_alpha_in_other_formats(kind, orien
 ONE = two_stones() == 300
 
 
-def test_a_last_channel_that_may_be_a_stone_is_refused(tmp_path):
+def test_a_last_channel_is_alpha_and_refused_where_it_may_be_a_stone(tmp_path):
     for values in (
         MASKS,
         MASKS.astype(np.uint8) * np.uint8(255),
@@ -208,12 +193,9 @@ def test_a_last_channel_that_may_be_a_stone_is_refused(tmp_path):
         for source in (values, tmp_path / "two.npy", tmp_path / "two.npz"):
             with pytest.raises(InputError, match=r"E109.*not transparency.*one channel.*a folder"):
                 read_stones(source)
-
-
-@pytest.mark.parametrize("labels", [two_stones(), colours(two_stones())])
-def test_an_array_with_alpha_is_read(labels):
     seen = two_stones() > 0
-    for alpha in (FULL, FULL * 0, seen * np.uint8(255), seen):
+    channels = (FULL, FULL * 0, seen * np.uint8(255), seen)
+    for labels, alpha in product((two_stones(), colours(two_stones())), channels):
         assert areas(read_stones(with_last(labels, alpha))) == {300: 375, 70000: 600}
 
 
@@ -314,13 +296,11 @@ def test_an_extra_channel_of_a_tiff_is_alpha_only_where_it_says_so(tmp_path):
         read_stones(written(tmp_path, tiff(values, extrasamples=["unspecified"], **options)))
 
 
-@pytest.mark.parametrize(
-    ("kind", "mode"), [*product(["TIFF", "lzw"], ["CMYK", "LAB", "YCbCr"]), ("JPEG", "CMYK")]
-)
-def test_colours_that_hold_no_ids(tmp_path, kind, mode):
-    image = Image.fromarray(colours(two_stones()))
-    image = Image.new("LAB", image.size, (3, 3, 3)) if mode == "LAB" else image.convert(mode)
-    options = {"compression": "tiff_lzw"} if kind == "lzw" else {}
-    image.save(tmp_path / "a.any", "TIFF" if kind == "lzw" else kind, **options)
-    with pytest.raises(InputError, match=rf"E107 a.any: the colour mode {mode} does not hold ids"):
-        read_stones(tmp_path / "a.any")
+def test_colours_that_hold_no_ids(tmp_path):
+    for kind, mode in (*product(["TIFF", "lzw"], ["CMYK", "LAB", "YCbCr"]), ("JPEG", "CMYK")):
+        image = Image.fromarray(colours(two_stones()))
+        image = Image.new("LAB", image.size, (3, 3, 3)) if mode == "LAB" else image.convert(mode)
+        options = {"compression": "tiff_lzw"} if kind == "lzw" else {}
+        image.save(tmp_path / "a.any", "TIFF" if kind == "lzw" else kind, **options)
+        with pytest.raises(InputError, match=rf"E107 a.any: .* mode {mode} does not hold ids"):
+            read_stones(tmp_path / "a.any")

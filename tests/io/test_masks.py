@@ -22,19 +22,16 @@ def test_components_are_numbered_in_row_order(mask):
     np.testing.assert_equal(components(mask), label(mask, connectivity=2, return_num=True))
 
 
-@pytest.mark.parametrize(
-    ("value", "dtype"),
-    [(1, bool), (1, np.uint8), (255, np.uint8), (1, float), (300, np.uint16)],
-)
-def test_two_values_are_a_mask(tmp_path, value, dtype):
-    mask = two_stones(value, value, dtype)
-    stones = read_stones(mask)
-    assert areas(stones) == {1: 375, 2: 600}
-    assert codes(stones) == ["W114"]
-    assert "2 components, numbered in row order" in stones.notices[0].message
-    if mask.dtype in (bool, np.uint8):
-        Image.fromarray(mask).save(tmp_path / "m.png")
-        assert areas(read_stones(tmp_path / "m.png")) == {1: 375, 2: 600}
+def test_two_values_are_a_mask(tmp_path):
+    for value, dtype in ((1, bool), (1, np.uint8), (255, np.uint8), (1, float), (300, np.uint16)):
+        mask = two_stones(value, value, dtype)
+        stones = read_stones(mask)
+        assert areas(stones) == {1: 375, 2: 600}
+        assert codes(stones) == ["W114"]
+        assert "2 components, numbered in row order" in stones.notices[0].message
+        if mask.dtype in (bool, np.uint8):
+            Image.fromarray(mask).save(tmp_path / "m.png")
+            assert areas(read_stones(tmp_path / "m.png")) == {1: 375, 2: 600}
 
 
 def test_stones_that_meet_at_a_corner_are_one_component():
@@ -164,30 +161,23 @@ def test_arrays_that_are_no_masks_and_damaged_archives(tmp_path):
         read_stones(path)
 
 
-@pytest.mark.parametrize(
-    ("dtype", "ground"),
-    [("f2", np.nan), ("f8", np.nan), ("f4", -1), ("i1", -1), ("i4", -1), ("i8", -1)],
-)
-def test_what_is_no_number_of_a_stone_is_ground(tmp_path, dtype, ground):
-    labels = np.where(two_stones() == 0, ground, two_stones(7, 9, float)).astype(dtype)
-    np.save(tmp_path / "a.npy", labels)
-    for background in (0, -1):
-        settings = ReadSettings(background=background)
-        stones = read_stones(tmp_path / "a.npy", settings=settings)
-        assert areas(stones) == {7: 375, 9: 600}
-        assert codes(stones) == ([] if ground == background else ["W135"])
-        wall = read_wall(tmp_path / "a.npy", settings)
-        np.testing.assert_array_equal(wall.labels, two_stones(7, 9))
-        assert codes(wall) == codes(stones)
-
-
-@pytest.mark.parametrize("ground", [np.nan, -1])
-def test_a_stone_of_0_on_such_a_ground_is_refused(ground):
-    labels = np.where(two_stones() == 0, ground, two_stones(0, 1).astype(float))
-    for background in (0, -1):
-        with pytest.raises(InputError, match=r"E108 .*375 px are 0.*add 1"):
-            read_stones(labels, settings=ReadSettings(background=background))
-    assert areas(read_stones(labels + 1 if ground != -1 else np.where(labels < 0, -1, labels + 1)))
+def test_what_is_no_number_of_a_stone_is_ground(tmp_path):
+    for dtype in ("f2", "f8", "f4", "i1", "i4", "i8"):
+        ground = np.nan if dtype in ("f2", "f8") else -1
+        none, zero = two_stones() == 0, two_stones(0, 1, float)
+        labels = np.where(none, ground, two_stones(7, 9, float)).astype(dtype)
+        np.save(tmp_path / "a.npy", labels)
+        for background in (0, -1):
+            settings = ReadSettings(background=background)
+            stones = read_stones(tmp_path / "a.npy", settings=settings)
+            assert areas(stones) == {7: 375, 9: 600}
+            assert codes(stones) == ([] if ground == background else ["W135"])
+            wall = read_wall(tmp_path / "a.npy", settings)
+            np.testing.assert_array_equal(wall.labels, two_stones(7, 9))
+            assert codes(wall) == codes(stones)
+            with pytest.raises(InputError, match=r"E108 .*375 px are 0.*add 1"):
+                read_stones(np.where(none, ground, zero), settings=settings)
+        assert areas(read_stones(np.where(none, ground, zero + 1)))
 
 
 def watershed(ground=1):

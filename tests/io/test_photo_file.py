@@ -22,29 +22,32 @@ def saved(path, values=PICTURE, mode=None, **more):
     return path
 
 
-def test_values_are_kept(tmp_path):
+def test_values_are_kept_and_grey_palette_and_cmyk_become_rgb(tmp_path):
     for name in ("photo.png", "photo.tif", "photo.TIFF"):
         path = saved(tmp_path / name)
         photo = read_photo(path)
         assert np.array_equal(photo.values, PICTURE)
         assert (photo.name, photo.size_px, photo.notices) == (name, (9, 6), ())
         assert photo.sha256 == hashlib.sha256(path.read_bytes()).hexdigest()
+    grey = read_photo(saved(tmp_path / "grey.jpg", PICTURE[..., 0]))
+    assert grey.values.shape == (6, 9, 3)
+    assert (grey.values[..., 0] == grey.values[..., 2]).all()
+    two = np.where(PICTURE[..., :1] > 127, 255, 0).astype(np.uint8).repeat(3, axis=2)
+    assert np.array_equal(read_photo(saved(tmp_path / "p.png", two, "P")).values, two)
+    cmyk = read_photo(saved(tmp_path / "cmyk.tif", two, "CMYK"))
+    assert np.abs(cmyk.values.astype(int) - two).max() <= 1
 
 
-@pytest.mark.parametrize(("orientation", "ending"), [*((turn, "jpg") for turn in range(2, 9)),
-                                                     (3, "png"), (6, "png")])  # fmt: skip
-def test_photos_are_turned_as_opencv_does(tmp_path, ending, orientation):
+def test_photos_are_turned_as_opencv_does_also_in_any_compression_and_by_xmp(tmp_path):
     smooth = np.zeros((24, 32, 3), dtype=np.uint8)
     smooth[:12, :16], smooth[12:, :16] = (250, 20, 20), (20, 20, 250)
-    path = saved(tmp_path / f"photo.{ending}", smooth, exif=held(orientation), quality=95)
-    theirs = cv2.imread(str(path), cv2.IMREAD_COLOR_RGB)
-    photo = read_photo(path)
-    assert np.abs(photo.values.astype(int) - theirs).max() < 12
-    assert codes(photo) == ["W173"]
-    assert path.name in photo.notices[0].message
-
-
-def test_orientations_in_any_compression_and_in_xmp_are_said(tmp_path):
+    for orientation, ending in (*((turn, "jpg") for turn in range(2, 9)), (3, "png"), (6, "png")):
+        path = saved(tmp_path / f"photo.{ending}", smooth, exif=held(orientation), quality=95)
+        theirs = cv2.imread(str(path), cv2.IMREAD_COLOR_RGB)
+        photo = read_photo(path)
+        assert np.abs(photo.values.astype(int) - theirs).max() < 12
+        assert codes(photo) == ["W173"]
+        assert path.name in photo.notices[0].message
     xmp = b'<rdf:Description tiff:Orientation="4"/>'
     for tags, compression in (({274: 4}, None), ({274: 4}, "tiff_lzw"), ({700: xmp}, None)):
         photo = read_photo(saved(tmp_path / "a.tif", tiffinfo=tags, compression=compression))
@@ -69,16 +72,6 @@ def test_16_bits_are_scaled_and_alpha_is_ignored_and_both_are_said(tmp_path):
         assert ("4095" in photo.notices[0].message) == (name in ("12.tif", "less.tif"))
     clear[..., 3] = 255
     assert read_photo(saved(tmp_path / "clear.png", clear)).notices == ()
-
-
-def test_grey_palette_and_cmyk_become_rgb(tmp_path):
-    grey = read_photo(saved(tmp_path / "grey.jpg", PICTURE[..., 0]))
-    assert grey.values.shape == (6, 9, 3)
-    assert (grey.values[..., 0] == grey.values[..., 2]).all()
-    two = np.where(PICTURE[..., :1] > 127, 255, 0).astype(np.uint8).repeat(3, axis=2)
-    assert np.array_equal(read_photo(saved(tmp_path / "p.png", two, "P")).values, two)
-    cmyk = read_photo(saved(tmp_path / "cmyk.tif", two, "CMYK"))
-    assert np.abs(cmyk.values.astype(int) - two).max() <= 1
 
 
 def test_files_that_are_no_photographs(tmp_path):

@@ -13,7 +13,6 @@ from shapely import affinity
 
 from drystone.errors import InputError, UsageError
 from drystone.io.photo_beside import (
-    SIDECAR,
     PhotoSidecar,
     check_place,
     photo_beside,
@@ -27,24 +26,21 @@ from drystone.io.walls import read_wall
 from tests.io.pictures import areas, said, two_stones, written
 
 
-def test_it_comes_back_beside_its_label_image_only(tmp_path):
+def test_it_comes_back_beside_its_label_image_only_and_damage_is_said(tmp_path):
     path = write_sidecar(PhotoSidecar(640, 480, 512.5, "photo.jpg", {"markers": [1]}), tmp_path)
     for encoding in ("utf-8", "utf-8-sig"):
         path.write_text(path.read_text("utf-8"), encoding=encoding)
         assert read_sidecar(tmp_path / "stones.png") == PhotoSidecar(640, 480, 512.5, "photo.jpg")
     assert read_sidecar(tmp_path / "other.png") is None
     assert read_sidecar(Path()) is None
-
-
-def test_damage_is_said(tmp_path):
     sides = '"width_px": 1, "height_px": 1'
     for text in ("[" * 100_000, '{"schema": "drystone-photo/1"}',
                  *(f'{{"schema": "drystone-photo/1", "px_per_m": {scale}, {sides}}}'
                    for scale in ("-1", '"x"'))):  # fmt: skip
-        (tmp_path / SIDECAR).write_text(text, encoding="utf-8")
+        path.write_text(text, encoding="utf-8")
         with pytest.raises(InputError, match="E112"):
             read_sidecar(tmp_path / "stones.png")
-    (tmp_path / SIDECAR).write_text('{"schema": "drystone-plan/1"}', encoding="utf-8")
+    path.write_text('{"schema": "drystone-plan/1"}', encoding="utf-8")
     assert read_sidecar(tmp_path / "stones.png") is None
 
 
@@ -68,16 +64,6 @@ def test_what_a_plan_keeps_of_the_photograph_comes_back_unless_it_is_damaged(tmp
         write_sidecar(PhotoSidecar(640, 480, details=details), tmp_path)
         with pytest.raises(InputError, match="E112"):
             read_sidecar(tmp_path / "stones.png")
-
-
-def test_a_pile_in_doubt_is_said_again(tmp_path):
-    Image.fromarray(two_stones(7, 9, np.uint8)).save(tmp_path / "stones.png")
-    for doubtful in ([], ["little was found", "the light is uneven"]):
-        write_sidecar(PhotoSidecar(60, 40, details={"doubtful": doubtful}), tmp_path)
-        said = [str(one) for one in read_stones(tmp_path).notices if one.code == "W183"]
-        assert len(said) == bool(doubtful)
-    assert "little was found; the light is uneven" in said[0]
-    assert "outlines.html" in said[0]
 
 
 def segmented(folder, picture=b"a picture"):
@@ -156,7 +142,7 @@ def test_the_name_of_a_photograph_leads_nowhere_else(tmp_path):
         assert photo_of(folder / "stones.png") is None
 
 
-def test_scale_of_a_photograph(tmp_path):
+def test_scale_of_a_photograph_and_that_its_pile_is_in_doubt_are_said_again(tmp_path):
     Image.fromarray(two_stones(7, 300, np.uint16)).save(tmp_path / "stones.png")
     for name in ("photo.jpg", "preview.png"):
         Image.new("RGB", (60, 40)).save(tmp_path / name)
@@ -167,6 +153,12 @@ def test_scale_of_a_photograph(tmp_path):
         assert stones.source.px_per_m == 250.0
         assert (stones.source.path, stones.source.files) == ("stones.png", ())
         assert stones.source.reading == ()
+    for doubtful in ([], ["little was found", "the light is uneven"]):
+        write_sidecar(PhotoSidecar(60, 40, details={"doubtful": doubtful}), tmp_path)
+        told = [str(one) for one in read_stones(tmp_path).notices if one.code == "W183"]
+        assert len(told) == bool(doubtful)
+    assert "little was found; the light is uneven" in told[0]
+    assert "outlines.html" in told[0]
     write_sidecar(PhotoSidecar(600, 400, 250.0, "photo.jpg"), tmp_path)
     with pytest.raises(InputError, match=r"E117 .*60 x 40 px.*600 x 400.*drystone segment"):
         read_stones(tmp_path)

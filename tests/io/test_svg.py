@@ -34,29 +34,27 @@ SEEN = [1, 2, 8, 4]
 RECT = STONE.format("")
 
 
-@pytest.mark.parametrize(
-    ("ratio", "box"), [("xMidYMid meet", [12, 4, 16, 8]), (" none ", [4, 4, 32, 8])]
-)
-def test_a_box_lies_in_the_middle_of_the_page_unless_it_is_stretched(ratio, box):
-    page = f'width="40mm" height="20mm" viewBox="0 0 10 10" preserveAspectRatio="{ratio}"'
-    assert bounds(RECT, page)[0] == [box]
-    shifted = page.replace("0 0 10 10", "-5 3 10 10")
-    moved = [box[0] + 5 * box[2] / 8, box[1] - 3 * box[3] / 4, *box[2:]]
-    np.testing.assert_allclose(bounds(RECT, shifted)[0], [moved])
+def test_a_box_lies_in_the_middle_of_the_page_unless_it_is_stretched():
+    for ratio, box in (("xMidYMid meet", [12, 4, 16, 8]), (" none ", [4, 4, 32, 8])):
+        page = f'width="40mm" height="20mm" viewBox="0 0 10 10" preserveAspectRatio="{ratio}"'
+        assert bounds(RECT, page)[0] == [box]
+        shifted = page.replace("0 0 10 10", "-5 3 10 10")
+        moved = [box[0] + 5 * box[2] / 8, box[1] - 3 * box[3] / 4, *box[2:]]
+        np.testing.assert_allclose(bounds(RECT, shifted)[0], [moved])
 
 
 def test_per_cents_are_of_the_page_and_its_style_says_how_a_window_shows_it():
     assert bounds('<rect x="10%" y="1%" width="25%" height="50%"/>')[0] == [[20, 1, 50, 50]]
-    boxes, said = bounds(f'<rect width="100%" height="100%"/>{RECT}')
-    assert boxes == [SEEN]
-    assert "1 rectangles over the whole page" in said
     assert bounds(f'<symbol id="s">{RECT}</symbol>{RECT}')[0] == [SEEN]
     assert bounds(RECT, f'{PAGE} style="width:100%;height:auto"')[0] == [SEEN]
 
 
-@pytest.mark.parametrize(
-    "hidden",
-    [
+def test_what_nobody_sees_is_left_aside():
+    sheet = """<style>/* rect{display:none} */ @font-face { font-family: f; src: url(f) }
+        .d {fill-opacity:0} .e {fill:none; stroke:#0000; stroke-width:9}
+        .b, #c { display: none } rect.sheet {visibility:hidden !important} text{fill:none}
+        g > rect:hover { cursor: pointer }</style>"""
+    for hidden in (
         ' display="none"', ' visibility="hidden"', ' opacity="0"', ' style="opacity:0%"',
         ' style="display : none"', ' style="visibility:collapse;fill:red"',
         ' fill="NONE"', ' style="fill:none;stroke:none"', ' fill="transparent"',
@@ -66,16 +64,10 @@ def test_per_cents_are_of_the_page_and_its_style_says_how_a_window_shows_it():
         ' style="fill:none;stroke:red;stroke-width:0mm"', ' class="d"', ' class="e"',
         ' fill="none" stroke="red" stroke-opacity="0"',
         ' class="a b"', ' id="c"', ' class="sheet"',
-    ],
-)  # fmt: skip
-def test_what_nobody_sees_is_left_aside(hidden):
-    sheet = """<style>/* rect{display:none} */ @font-face { font-family: f; src: url(f) }
-        .d {fill-opacity:0} .e {fill:none; stroke:#0000; stroke-width:9}
-        .b, #c { display: none } rect.sheet {visibility:hidden !important} text{fill:none}
-        g > rect:hover { cursor: pointer }</style>"""
-    boxes, said = bounds(sheet + STONE.format(hidden) + RECT)
-    assert boxes == [SEEN]
-    assert "1 elements that are hidden" in said
+    ):  # fmt: skip
+        boxes, said = bounds(sheet + STONE.format(hidden) + RECT)
+        assert boxes == [SEEN]
+        assert "1 elements that are hidden" in said
 
 
 def test_the_rule_that_says_most_counts():
@@ -112,22 +104,21 @@ def test_paint_and_visibility_are_inherited_and_a_fill_closes_lines_that_are_ope
         assert "1 open lines in path, 1 open lines in polyline" in said
 
 
-def test_of_a_switch_the_way_without_a_condition_is_drawn_and_of_one_id_the_first():
+def test_pages_ways_of_a_switch_and_other_layers_and_sheets_are_left_aside_and_named():
     other = '<g {}><rect width="5" height="5"/></g>'
     ways = [other.format(f'{name}="de"') for name in ("systemLanguage", "requiredExtensions")]
-    boxes, said = bounds(f"<switch><title/>{''.join(ways)}{RECT}{other.format('')}</switch>")
-    assert boxes == [SEEN]
-    assert "3 elements that are hidden" in said
-    twice = STONE.format(' id="s"') + '<circle id="s" r="3"/>'
-    assert bounds(f'<defs>{twice}</defs><use href="#s"/>')[0] == [SEEN]
-
-
-def test_a_sheet_of_another_file_is_named_and_what_stands_beside_it_is_read():
-    boxes, said = bounds(
-        f"<style>@import url(a.css); .a{{opacity:0}}</style>{RECT}" + STONE.format(' class="a"')
-    )
-    assert boxes == [SEEN]
-    assert "a style sheet in another file was not read" in said
+    sheet = "<style>@import url(a.css); .a{opacity:0}</style>"
+    for body, text in (
+        (f'<rect width="100%" height="100%"/>{RECT}', "1 rectangles over the whole page"),
+        (f"<switch><title/>{''.join(ways)}{RECT}{other.format('')}</switch>",
+         "3 elements that are hidden"),
+        (sheet + RECT + STONE.format(' class="a"'), "a style sheet in another file was not read"),
+        (f'<rect width="9" height="9"/><g id="STONES">{RECT}</g>',
+         "1 shapes outside the group STONES"),
+    ):  # fmt: skip
+        boxes, said = bounds(body)
+        assert boxes == [SEEN]
+        assert text in said
 
 
 LEFT, MIDDLE, RIGHT = (
@@ -213,9 +204,8 @@ ROUGH, FINE = (
 )
 
 
-@pytest.mark.parametrize(
-    ("body", "text"),
-    [
+def test_what_is_refused(tmp_path):
+    for body, text in (
         (f"<svg>{RECT}</svg>", FEW),
         (f'<symbol id="s">{RECT}</symbol><use href="#s"/>', FEW),
         # What moves or shapes by style.
@@ -252,14 +242,9 @@ ROUGH, FINE = (
         ('<polygon points="1 2 3"/>', r"E114 .*a polygon cannot be used"),
         ("<text>nothing</text>", r"E104 .*no stones in it.*1 text"),
         ("<g>", r"E106 .*damaged or cut short \(mismatched tag"),
-    ],
-)  # fmt: skip
-def test_what_is_refused(tmp_path, body, text):
-    with pytest.raises(InputError, match=text):
-        kept(svg(body), tmp_path)
-
-
-def test_what_is_refused_of_pages_and_per_cents():
+    ):  # fmt: skip
+        with pytest.raises(InputError, match=text):
+            kept(svg(body), tmp_path)
     page = 'width="40mm" height="20mm" viewBox="0 0 1 1" preserveAspectRatio="xMinYMax"'
     with pytest.raises(InputError, match=FEW):
         bounds(RECT, page)
@@ -267,22 +252,22 @@ def test_what_is_refused_of_pages_and_per_cents():
         bounds('<rect x="3%" width="8" height="4"/>', "")
 
 
-@pytest.mark.parametrize(
-    ("own", "unit", "metres"),
-    [("mm", "mm", 1e-3), ("mm", "px", None), ("in", "m", 1.0), ("pt", "cm", 1e-2),
-     ("pc", "ft", 0.3048)],
-)  # fmt: skip
-def test_a_wrong_unit_of_a_drawing_is_corrected(tmp_path, own, unit, metres):
-    page = svg(ALL.replace('id="', 'data-x="'), f"200{own}", f"100{own}", "0 0 400 200")
-    stones = kept(page, tmp_path, ReadSettings(unit=unit))
-    said = [n.message for n in stones.notices if "gives another unit" in n.message]
-    assert len(said) == (own != unit)
-    scale = stones.source.px_per_m
-    if metres is None:
-        assert (scale, stones.by_id(1).area_px) == (None, 1600)
-        return
-    side = 40 * metres * (0.5 if own == unit else 1.0)  # shares of a unit are what a user unit is
-    assert stones.by_id(1).area_px / scale**2 == pytest.approx(side**2, rel=0.02)
+def test_a_wrong_unit_of_a_drawing_is_corrected(tmp_path):
+    for own, unit, metres in (
+        ("mm", "px", None), ("mm", "mm", 1e-3), ("in", "m", 1.0), ("pt", "cm", 1e-2),
+        ("pc", "ft", 0.3048),
+    ):  # fmt: skip
+        page = svg(ALL.replace('id="', 'data-x="'), f"200{own}", f"100{own}", "0 0 400 200")
+        stones = kept(page, tmp_path, ReadSettings(unit=unit))
+        said = [n.message for n in stones.notices if "gives another unit" in n.message]
+        assert len(said) == (own != unit)
+        scale = stones.source.px_per_m
+        if metres is None:
+            assert (scale, stones.by_id(1).area_px) == (None, 1600)
+            continue
+        # Shares of a unit are what a user unit is.
+        side = 40 * metres * (0.5 if own == unit else 1.0)
+        assert stones.by_id(1).area_px / scale**2 == pytest.approx(side**2, rel=0.02)
 
 
 def svg(body, width=f"{WIDTH * MM}mm", height=f"{HEIGHT * MM}mm", box=f"0 0 {WIDTH} {HEIGHT}"):
@@ -333,7 +318,7 @@ def test_stones_that_lie_far_apart_are_drawn_smaller(tmp_path):
     assert int(re.search(r"it is (\d+) px", notice.message)[1]) < 160
 
 
-def test_definitions_are_used_under_nested_transforms():
+def test_definitions_are_used_under_nested_transforms_and_of_one_id_the_first():
     """Turned where they are defined, mirrored around, and put back."""
     page = 'viewBox="0 0 200 100" xmlns:xlink="http://www.w3.org/1999/xlink"'
     defined = STONE.format(' id="stone" transform="rotate(90)"')
@@ -343,6 +328,8 @@ def test_definitions_are_used_under_nested_transforms():
         f'<a transform="translate(-15 50)"><g transform="scale(.5 -.5)">{used}</g></a></g>'
     )
     assert bounds(body, page)[0] == [SEEN, SEEN]
+    twice = STONE.format(' id="s"') + '<circle id="s" r="3"/>'
+    assert bounds(f'<defs>{twice}</defs><use href="#s"/>')[0] == [SEEN]
 
 
 def test_svg_shapes_by_closed_forms(tmp_path):
@@ -376,12 +363,6 @@ def test_svg_shapes_by_closed_forms(tmp_path):
     for kind in ("1 text", "1 line,", "1 open lines in path", "1 open lines in polyline",
                  "1 rectangles over the whole page"):  # fmt: skip
         assert kind in notice.message
-
-
-def test_a_layer_of_stones_is_all_that_counts():
-    boxes, said = bounds(f'<rect width="9" height="9"/><g id="STONES">{RECT}</g>')
-    assert boxes == [SEEN]
-    assert "1 shapes outside the group STONES" in said
 
 
 def test_a_number_beside_a_label_of_inkscape_counts():

@@ -28,28 +28,19 @@ def read_back(values, bits, compression, **choices):
         options = layout | dict(zip(choices, chosen, strict=True))
         found = decode(write_tiff(values, bits, compression, **options), LIMIT).values
         found = found if found.dtype.kind == "f" else found.astype(np.int64)
-        np.testing.assert_array_equal(found, values.squeeze(), err_msg=str(options))
+        np.testing.assert_array_equal(found, values.squeeze(), err_msg=f"{bits} bits, {options}")
 
 
 @packings
-@pytest.mark.parametrize("bits", [1, 2, 4, 6, 8, 12, 16, 32])
-def test_whole_numbers(bits, compression):
-    read_back(
-        labels(bits), bits, compression, order="<>", reverse=(False, True), photometric=(0, 1)
-    )
-
-
-@packings
-@pytest.mark.parametrize(("bits", "channels"), [(8, 1), (16, 1), (32, 1), (8, 3), (16, 3)])
-def test_differences(bits, compression, channels):
-    values = np.dstack([labels(bits), labels(bits) // 2, labels(bits) // 3])[..., :channels]
-    read_back(values, bits, compression, order="<>", planar=(False, True), predictor=[2])
-
-
-@packings
-@pytest.mark.parametrize("bits", [16, 32, 64])
-def test_numbers_with_a_point(bits, compression):
-    read_back(labels(8) + 0.5, bits, compression, order="<>", predictor=(1, 3), sample=[3])
+def test_whole_numbers_differences_and_numbers_with_a_point(compression):
+    for bits in (1, 2, 4, 6, 8, 12, 16, 32):
+        both = {"reverse": (False, True), "photometric": (0, 1)}
+        read_back(labels(bits), bits, compression, order="<>", **both)
+    for bits, channels in ((8, 1), (16, 1), (32, 1), (8, 3), (16, 3)):
+        values = np.dstack([labels(bits), labels(bits) // 2, labels(bits) // 3])[..., :channels]
+        read_back(values, bits, compression, order="<>", planar=(False, True), predictor=[2])
+    for bits in (16, 32, 64):
+        read_back(labels(8) + 0.5, bits, compression, order="<>", predictor=(1, 3), sample=[3])
 
 
 @packings

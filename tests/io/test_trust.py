@@ -62,25 +62,22 @@ def test_a_pipe_is_not_waited_for_and_what_has_no_end_or_is_too_large_is_not_rea
 OWN, LONG = InputError("E110", "too large"), "x" * 100_000
 
 
-@pytest.mark.parametrize(
-    ("raised", "text"),
-    [
+def test_whatever_a_decoder_raises_has_a_code_unless_it_is_an_interrupt():
+    for raised, text in (
         *((error, "E106 a: damaged") for error in (RecursionError(), ZeroDivisionError(LONG),
                                                    AttributeError("a"), SystemExit(), OSError())),
         (MemoryError(), "E110 a: there is not enough memory"),
         (OWN, "E110"),
         (KeyboardInterrupt(), None),
-    ],
-)  # fmt: skip
-def test_whatever_a_decoder_raises_has_a_code_unless_it_is_an_interrupt(raised, text):
-    kind = KeyboardInterrupt if isinstance(raised, KeyboardInterrupt) else InputError
-    with (
-        pytest.raises(kind, match=text) as caught,
-        foreign(lambda why: InputError("E106", f"damaged ({why})", where="a")),
-    ):
-        raise raised
-    assert len(str(caught.value)) < 300
-    assert (caught.value is raised) == (raised is OWN or kind is KeyboardInterrupt)
+    ):  # fmt: skip
+        kind = KeyboardInterrupt if isinstance(raised, KeyboardInterrupt) else InputError
+        with (
+            pytest.raises(kind, match=text) as caught,
+            foreign(lambda why: InputError("E106", f"damaged ({why})", where="a")),
+        ):
+            raise raised
+        assert len(str(caught.value)) < 300
+        assert (caught.value is raised) == (raised is OWN or kind is KeyboardInterrupt)
 
 
 def test_what_libraries_print_reaches_nobody(capfd):
@@ -135,23 +132,20 @@ def test_notices_on_thousands_of_bits_are_short():
     assert max(len(str(notice)) for notice in said) < 6000
 
 
-@pytest.mark.parametrize(
-    ("name", "data"),
-    [
+def test_what_a_file_says_is_repeated_in_short(tmp_path):
+    for name, data in (
         ("stones.json", f'{{"schema": "drystone-photo/1", "px_per_m": "{LONG}"}}'.encode()),
         ("a.json", f'{{"{LONG}": 1, "b{LONG}": 2}}'.encode()),
         ("a.json", f'{{"type": "FeatureCollection", "features": [], "unit": "{LONG}"}}'.encode()),
         ("a.json", f'{{"images": [{{"id": 1, "file_name": "{LONG}"}}], "annotations": '
                    f'[{{"image_id": 1}}, {{"image_id": 2}}]}}'.encode()),
         ("a.obj", f"v 0 0 0\nv 9 0 0\nv 9 0 9\no {LONG}\nf 1 2 {LONG}\n".encode()),
-    ],
-)  # fmt: skip
-def test_what_a_file_says_is_repeated_in_short(tmp_path, name, data):
-    (tmp_path / "stones.png").write_bytes(b"labels")
-    (tmp_path / name).write_bytes(data)
-    with pytest.raises(DrystoneError) as told:
-        read_stones(tmp_path / ("stones.png" if name == "stones.json" else name))
-    assert 20 < len(str(told.value)) < 1000
+    ):  # fmt: skip
+        (tmp_path / "stones.png").write_bytes(b"labels")
+        (tmp_path / name).write_bytes(data)
+        with pytest.raises(DrystoneError) as told:
+            read_stones(tmp_path / ("stones.png" if name == "stones.json" else name))
+        assert 20 < len(str(told.value)) < 1000
 
 
 @pytest.mark.skipif(sys.platform in {"win32", "darwin"}, reason="file names are Unicode there")

@@ -6,15 +6,18 @@ import shapely
 
 from drystone.kernels.as_built import Built
 from drystone.model.builder import HAND, BuilderErrors, as_planned, stratified
-from drystone.search.rehearsal import rehearse
+from drystone.search.rehearsal import rehearse, rehearse_in_engine
 from drystone.settle.putting import bare_wall, fallen_share, lost
 from drystone.settle.settings import SettleSettings
 from tests.naive.as_built import SlowWall
 from tests.polygons import box_of as box
-from tests.search.test_rehearsal import BOTH, NONE
+from tests.search.test_rehearsal import NO_ENGINE, NONE
 
 SETTLE = SettleSettings()
 BARE = bare_wall(0.58, SETTLE)
+BOTH = pytest.mark.parametrize(
+    "once", [rehearse, pytest.param(rehearse_in_engine, marks=NO_ENGINE)]
+)
 
 
 def brick(x, y, angle_deg=0.0, width=40.0):

@@ -48,7 +48,17 @@ def random_case(seed):
     gaps = np.array([rng.integers(-1 - n, n + 1) for n in sizes], np.int32)
     turns = rng.integers(0, 4, count, np.int32)
     plan = Arrangement(rng.permutation(count).astype(np.int32), turns, sizes, gaps)
-    return poses, plan, random_ground(rng, columns, width), random_rules(rng, count)
+    ground = random_ground(rng, columns, width)
+    rules = Rules(
+        Weights(*rng.uniform(0.0, 1.0, TERMS).tolist()),
+        reach=int(rng.integers(1, 300)),
+        margin=float(rng.uniform(0.0, 0.4)),
+        steepest=int(rng.integers(0, 20000)),
+        joint=int(rng.integers(0, 5)),
+        courses=max(4, count),
+        target=float(rng.uniform(0.0, 100.0)),
+    )
+    return poses, plan, ground, rules
 
 
 def random_ground(rng, columns, width):
@@ -62,19 +72,6 @@ def random_ground(rng, columns, width):
     ways = ways_up(joints, [], np.zeros((0, STARTS), np.int32), width)
     beds = rng.integers(0, 100, (2, 3), np.int32)
     return Ground(rng.integers(0, 200, columns, np.int32), ends, ways, beds, width, height)
-
-
-def random_rules(rng, count):
-    weights = Weights(*rng.uniform(0.0, 1.0, TERMS).tolist())
-    return Rules(
-        weights,
-        reach=int(rng.integers(1, 300)),
-        margin=float(rng.uniform(0.0, 0.4)),
-        steepest=int(rng.integers(0, 20000)),
-        joint=int(rng.integers(0, 5)),
-        courses=max(4, count),
-        target=float(rng.uniform(0.0, 100.0)),
-    )
 
 
 cases = st.integers(0, 10**6).map(random_case)

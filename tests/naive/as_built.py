@@ -149,7 +149,9 @@ class SlowWall:
         after, rest = left.put(again.items()), left.laid.get(block)
         if block not in again and rest is None:
             at = (x, y, 0.0)
-            if left.gives_way(built, after, again) or left.comes_back(block, built, at, again):
+            if left.gives_way(built, after, again) or any(
+                left.tips_back(block, built, at, again, part) for part in (0.05, 0.5)
+            ):
                 return self
         if rest is not None and not again.keys() <= after.laid.keys():
             for i in again.keys() - after.laid.keys():
@@ -171,11 +173,8 @@ class SlowWall:
         alone = settle(corners, edges, pose, around, 0.0, rules).status is Status.RESTS
         return alone and all(is_near(after.laid.get(i), one, 0.5) for i, one in again.items())
 
-    def comes_back(self, block, built, at, again):
-        """Say whether its load acts over the edge again once a block has tipped a bit or more."""
-        return any(self.tips_back(block, built, at, again, part) for part in (0.05, 0.5))
-
     def tips_back(self, block, built, at, again, part):
+        """Say whether its load acts over the edge again once a block has tipped so far."""
         corners, rules = built.corners - at[:2], self.how(built.size).rules
         less = rules._replace(turn=part * rules.turn, shift=part * rules.shift)
         end = settle(corners, polygon_edges(corners), at, self.polygons(), 0.0, less)

@@ -35,16 +35,10 @@ def all_drops(profile, stone, terms, constant):
 
     The lists end where the stone would reach beyond the wall's end.
     """
-    found, place = [], 0
-    width = stone.right - stone.left
-    columns = len(stone.bottoms)
-    while (
-        place * terms.cell_px + width <= terms.width_px + 1e-9 * terms.cell_px
-        and place + columns <= len(profile.tops)
-    ):
-        found.append(one_drop(profile, stone, terms, constant, place))
-        place += 1
-    return found
+    room = terms.width_px + 1e-9 * terms.cell_px - (stone.right - stone.left)
+    places = range(len(profile.tops) - len(stone.bottoms) + 1)
+    inside = [place for place in places if place * terms.cell_px <= room]
+    return [one_drop(profile, stone, terms, constant, place) for place in inside]
 
 
 def one_drop(profile, stone, terms, constant, place):

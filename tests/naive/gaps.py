@@ -1,11 +1,4 @@
-"""Slow, obvious twins of drystone.contacts.gaps."""
-
-from tests.naive.raster import polygon_of
-
-
-def distance(labels, one, other):
-    """Between the edges of two stones."""
-    return polygon_of(labels == one).distance(polygon_of(labels == other))
+"""Slow, obvious twin of drystone.contacts.gaps."""
 
 
 def lies_between(labels, row, col):

@@ -32,28 +32,6 @@ def overlap_area(corners, around):
     return float(sum(shape.intersection(other).area for other in others))
 
 
-def best_nearby(outline, pose, around, width, lean, clearance):
-    """The most that small motions in many directions, of several sizes, go down.
-
-    Motions are shifts and turns whose furthest corner goes a thousandth to a fiftieth of the
-    outline's arm, the ones that keep the clearance but for a hundredth of it.
-    """
-    arm = float(np.hypot(*outline.T).max())
-    best = 0.0
-    for share in (0.001, 0.003, 0.01, 0.02):
-        for polar in np.linspace(0.0, np.pi, 13):
-            for round_ in np.linspace(0.0, 2.0 * np.pi, 24, endpoint=False):
-                x = share * arm * math.sin(polar) * math.cos(round_)
-                y = share * arm * math.sin(polar) * math.sin(round_)
-                gained = -y - lean * x
-                if gained <= best:
-                    continue
-                moved = (pose[0] + x, pose[1] + y, pose[2] + share * math.cos(polar))
-                if min(distances(placed(outline, moved), around, width)) >= 0.99 * clearance:
-                    best = gained
-    return best
-
-
 def contacts(corners, around, tolerance):
     """Corners in front of edges, and pairs of corners with all normals that their edges have."""
     sure = [(x, y, 0.0, 1.0) for x, y in corners.tolist() if y <= tolerance]

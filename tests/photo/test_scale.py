@@ -128,9 +128,8 @@ def pair(y=0.0, angle=0.0):
     return [(0, 0.0, -0.1, 0.0, SIDE), (1, angle, 0.1, y, SIDE)]
 
 
-@pytest.mark.parametrize(
-    ("found", "layout", "code", "said"),
-    [
+def test_markers_that_give_no_scale_are_refused():
+    for found, layout, code, said in (
         ((), None, "E170", ""),
         (seen(STRAIGHT, APART[:1]), None, "E170", "only marker 0"),
         (seen(FAR, APART), None, "E170", "smaller than 40 px: 0 (33 px), 2 (33 px)"),
@@ -139,17 +138,14 @@ def pair(y=0.0, angle=0.0):
         (mixed(0.96, 0.0), None, "E172", "arker 0"),
         (mixed(0.96, 30.0), None, "E172", "arker 0"),
         (mixed(0.5, 15.0), None, "E172", "arker 0"),
-        (seen(STRAIGHT, APART), SHEET, "E172", ""),
+        (seen(STRAIGHT, APART), SHEET, "E172", ""),  # a sheet cut up
+        # One marker lies on a stone.
         ((*seen(STRAIGHT, APART[:1]), *seen(STONE_6_CM_HIGH, APART[1:])), None, "E172", ""),
         (seen(HORIZON, pair(0.03, 20.0)), None, "E173", ""),
-    ],
-    ids=["none", "one", "small", "flat", "an id twice", "two sizes", "two sizes, tilted", "half",
-         "a sheet cut up", "on a stone", "horizon"],
-)  # fmt: skip
-def test_markers_that_give_no_scale_are_refused(found, layout, code, said):
-    refused, text = code_of(found, layout, TALL if code == "E173" else SIZE)
-    assert refused == code
-    assert said in text
+    ):
+        refused, text = code_of(found, layout, TALL if code == "E173" else SIZE)
+        assert refused == code
+        assert said in text
 
 
 def test_small_markers_and_a_bent_sheet_are_used_and_doubted():

@@ -427,26 +427,15 @@ def test_a_joint_that_was_filled_is_cleared_to_its_middle(filled):
     assert np.count_nonzero(refined != stones) < 30  # corners are rounded
 
 
-def on_blue(*discs):
-    """Some discs, (column, radius), on a plain ground."""
-    picture = rgb(200 + np.random.default_rng(4).normal(0, 2, SHAPE), (0.4, 0.6, 1.0))
-    rows, cols = np.indices(SHAPE)
-    for col, radius in discs:
-        picture[np.hypot(rows - 200, cols - col) < radius] = 130, 120, 110
-    return picture
-
-
 def test_few_stones_on_a_large_plain_ground_are_not_in_doubt():
-    found = segment(on_blue((120, 22), (300, 22), (480, 22)))
+    found = segment(drawn(*(disc(150, col, 15) for col in (80, 200, 320))))
     assert found.count == 3
     assert not verdict_of(found, doubts_of(found))
 
 
 def test_many_shapes_that_were_left_out_are_named_in_part():
-    picture = on_blue((280, 70))
-    for col in range(30, 540, 40):
-        picture[395:401, col : col + 6] = 130, 120, 110
-    found = segment(picture)
+    specks = [(ROWS // 6 == 46) & (COLS // 6 == part) for part in range(3, 64, 5)]
+    found = segment(drawn(disc(150, 200, 60), *specks))
     (notice,) = notices_of(doubts_of(found))
     assert notice.code == "W182"
     assert notice.message.count("too small") == LISTED

@@ -173,22 +173,15 @@ def test_the_unit_of_weight_is_a_stone_of_the_set(monkeypatch):
     assert {(of.units.length, of.units.weight) for of in programs} == {(np.sqrt(area), area)}
 
 
-SCALE, PX_PER_M = 0.5, 200.0
-
-
-def wedged_build():
-    """A slab of 40 x 8 source px on two wedges of 4 x 2 working px."""
-    site = ds.Site.from_source(60, 40, SCALE, PX_PER_M)
+def test_multipliers_stand_at_the_last_step_of_a_group_and_areas_are_of_the_source():
+    # A slab of 40 x 8 source px on two wedges of 4 x 2 working px.
+    site = ds.Site.from_source(60, 40, 0.5, 200.0)
     planner = ds.Planner(blocks({7: (40, 8)}), site)
     posed, row = planner.workshop.poses(7)[0], site.height_px - 2
     wedges = [Wedge(8 + k, 7, np.ones((2, 4), bool), row, col) for k, col in ((0, 2), (1, 16))]
     placement = Placement(posed, row - posed.height_px, 1)
     planner.restore(planner.build.wall.add(placement, tuple(wedges)), {})
-    return planner.build
-
-
-def test_multipliers_stand_at_the_last_step_of_a_group_and_areas_are_of_the_source():
-    build = wedged_build()
+    build = planner.build
     steps = plan_steps(build, {7: 1})
     assert [(step.step, step.kind) for step in steps] == [(1, "stone"), (2, "wedge"), (3, "wedge")]
     assert [step.alpha_left is None for step in steps] == [True, True, False]
@@ -200,7 +193,7 @@ def test_multipliers_stand_at_the_last_step_of_a_group_and_areas_are_of_the_sour
     assert metrics.wedge_area == pytest.approx(16 * (2 / 200) ** 2)
     assert metrics.F_SF == pytest.approx(40 * 8 / (60 * 40))
     # A stone of 5 x 3 source px is 3 x 2 or 2 x 2 px at half size, never 3.75.
-    result = ds.plan_wall(blocks({1: (5, 3)}), 10, 8, method="paper", scale=SCALE)
+    result = ds.plan_wall(blocks({1: (5, 3)}), 10, 8, method="paper", scale=0.5)
     assert result.metrics.F_SF == pytest.approx(15 / 80)
 
 

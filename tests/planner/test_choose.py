@@ -10,7 +10,6 @@ import pytest
 
 import drystone as ds
 from drystone.errors import UsageError
-from drystone.indices import Indices
 from drystone.io.plan_json import plan_to_json
 from drystone.model.placement import Placement
 from drystone.model.wall import Group, Wall
@@ -27,9 +26,9 @@ from drystone.selection.scored import ScoreSettings
 from drystone.statics.model import Interface, RigidBlockModel
 from tests.pages import printed
 from tests.planner import scenes
+from tests.selection.offers import INDICES
 
 EMPTY = Build(Wall.empty(ds.Site(20, 20)), RigidBlockModel((), ()))
-INDICES = Indices(SF=1.0, LFR=1.0, GDS=0.5, NHR=0.0, IWR=0.5, IS=0.0, LLC=0.5, boundary=False)
 
 
 def _proposal(stone_id, side="left", cost=0.0):

@@ -74,11 +74,8 @@ def check_wall(one):
         assert int((wall.labels > 0).sum()) == counted
         model = model_from_labels(wall.labels, one.settings.mu).model
     else:
-        polygons = [shapely.Polygon(corners) for _, corners in wall.outlines.blocks]
-        for i, polygon in enumerate(polygons):
-            assert polygon.bounds[1] >= -1e-9
-            for other in polygons[:i]:
-                assert polygon.intersection(other).area < 1e-9
+        shapes = scenes.kept_apart(wall, settle.clearance_px)
+        assert min(shape.bounds[1] for shape in shapes) >= -1e-9
         model = model_of_outlines(wall.outlines.blocks, one.settings.mu, settle.contact_px)
     assert lateral_resistance(model).stable
     assert all(action.stands for action in one.build.actions)

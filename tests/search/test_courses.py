@@ -236,8 +236,7 @@ def test_pinned_stones_are_left_out_last():
     assert set(left) <= ids(left)
 
 
-def rng(seed):
-    return np.random.default_rng(seed)
+rng = np.random.default_rng
 
 
 def yard_of(site=scenes.RUBBLE_SITE, **changes):

@@ -32,12 +32,9 @@ def runs(groups, precision, count=8, once=rehearse):
 
 
 NO_ENGINE = pytest.mark.skipif(find_spec("pymunk") is None, reason="pymunk is not installed")
-BOTH = pytest.mark.parametrize(
-    "once", [rehearse, pytest.param(rehearse_in_engine, marks=NO_ENGINE)]
-)
 
 
-@BOTH
+@pytest.mark.parametrize("once", [rehearse, pytest.param(rehearse_in_engine, marks=NO_ENGINE)])
 def test_where_a_stone_ends_is_asked_not_how_it_was_put(once):
     (end,) = once([[(1, box(0.0, 0.0))]], TURNED, np.random.default_rng(6)).stones
     drawn = stratified(np.random.default_rng(6), 1, 1)[0]

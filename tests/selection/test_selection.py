@@ -10,21 +10,19 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from drystone.errors import UsageError
-from drystone.indices import Indices
 from drystone.selection.algorithm2 import Action, SelectionSettings, select_action, weighted_sum
 from drystone.selection.policy import choice_of
 from drystone.selection.sampling import sample_stones, second_fold
 from drystone.selection.scored import Craft, ScoreSettings, craft_cost
 from tests.naive.selection import algorithm2
-from tests.selection.offers import offered
+from tests.selection.offers import INDICES, offered
 from tests.strategies import repeatable
 
-EVEN = Indices(SF=1, LFR=0.5, GDS=0.5, NHR=0.5, IWR=0.5, IS=0.5, LLC=0.5, boundary=False)
 EIGHTHS = st.integers(0, 8).map(lambda n: n / 8)
 
 
 def action(stone_id, **changes):
-    return Action(stone_id, dataclasses.replace(EVEN, **changes))
+    return Action(stone_id, dataclasses.replace(INDICES, **changes))
 
 
 @st.composite

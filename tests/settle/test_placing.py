@@ -18,11 +18,9 @@ STONE = Stone(5, np.ones((4, 6), bool))
 BRICK = Stone(1, np.ones((6, 10), bool))
 
 
-def placed(site, corners, outlines=None, moves=0):
-    x, y = corners.mean(axis=0).tolist()
-    settled = Settled(x, y, corners)
-    there = Outlines.empty(site) if outlines is None else outlines
-    return settled_placement(there, site, STONE, 12.5, settled, "right", moves)
+def placed(site, corners, moves=0):
+    settled = Settled(*corners.mean(axis=0).tolist(), corners)
+    return settled_placement(Outlines.empty(site), site, STONE, 12.5, settled, "right", moves)
 
 
 def test_pixels_that_are_half_full_are_the_stones():
@@ -48,19 +46,6 @@ def test_the_anchor_is_where_the_centroid_is(scale):
     alone = Wall.empty(site, exact=True).add(made)
     assert np.array_equal(alone.labels[made.window] == 5, made.posed.mask)
     assert np.count_nonzero(alone.labels) == np.count_nonzero(made.posed.mask)
-
-
-def test_what_is_there_helps_to_fill_pixels():
-    site = Site(12, 8)
-    alone = placed(site, box(6.6, 0.0, 9.0, 2.0))
-    assert (alone.col, alone.posed.width_px) == (7, 2)
-    there = Outlines.empty(site).added([(3, box(2.0, 0.0, 6.2, 2.0))], 1.0)
-    beside = placed(site, box(6.6, 0.0, 9.0, 2.0), there)
-    assert (beside.col, beside.posed.width_px) == (6, 3)
-    # A pixel that was half full before is not its own.
-    there = Outlines.empty(site).added([(3, box(2.0, 0.0, 6.55, 2.0))], 1.0)
-    later = placed(site, box(6.56, 0.0, 9.0, 2.0), there)
-    assert (later.col, later.posed.width_px) == (7, 2)
 
 
 def test_no_pixel_of_the_wall_is_no_placement_and_over_its_edge_there_are_none():

@@ -32,11 +32,9 @@ from tests.strategies import repeatable, walls
 
 PX = Units(15.0, 225.0)
 
-ANALYSES = ["simplex", "local", "highs"]
-"""What the incremental analysis falls through, from the top, the middle, and the bottom."""
-
 SOLVERS = {"simplex": {SIMPLEX}, "local": {SIMPLEX, LOCAL, WARM}, "highs": {WARM}}
-"""Who answers about walls that stand."""
+"""What the incremental analysis falls through, from the top, the middle, and the bottom, and who
+answers there about walls that stand."""
 
 
 def upwards(labels):
@@ -91,7 +89,7 @@ def bits(result):
     return [(r.status, r.alpha, r.certificate, r.solver) for r in both]
 
 
-@pytest.fixture(params=ANALYSES)
+@pytest.fixture(params=list(SOLVERS))
 def name(request):
     return request.param
 

@@ -4,23 +4,12 @@ import math
 from itertools import pairwise
 
 import numpy as np
-from hypothesis import strategies as st
 
 from drystone.contacts.given import model_from_json
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import GROUND, RigidBlockModel
 from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
 from tests.polygons import box_of
-
-JAMS = {
-    "pier": st.floats(0.6, 3.0),
-    "height": st.floats(2.5, 5.0),
-    "gap": st.floats(0.4, 1.5),
-    "mu": st.sampled_from([0.4, 0.58, 0.84]),
-    "covered": st.booleans(),
-    "unit": st.sampled_from([1.0, 1e-3, 1e3]),
-}
-"""What :func:`between_piers` is given."""
 
 
 def stacked(*blocks):

@@ -24,25 +24,6 @@ from tests.verify.examples import SLAB, WEDGE, example
 from tests.verify.tampering import changed, moved, reshaped
 
 
-@pytest.mark.parametrize("make", [example, exact_example])
-@pytest.mark.parametrize(("scale", "px_per_m"), [(1.0, None), (1.0, 137.0), (0.5, 211.3)])
-def test_wall_is_rebuilt_to_the_pixel(make, scale, px_per_m):
-    made = make(scale, px_per_m)
-    found = rebuild_wall(read_again(made.plan), made.stones)
-    np.testing.assert_array_equal(found.labels, made.wall.labels)
-    assert found.site == made.wall.site
-    assert [p.side for p in found.placements] == [p.side for p in made.wall.placements]
-    (mine,), (its,) = found.wedges, made.wall.wedges
-    assert (mine.id, mine.under, mine.row, mine.col) == (WEDGE, SLAB, its.row, its.col)
-    np.testing.assert_array_equal(mine.mask, its.mask)
-    assert (mine.corners is None) == (make is example)
-    if make is exact_example:
-        # Lengths that were in metres are rounded.
-        assert np.abs(mine.corners - its.corners).max() < 1e-9
-        for one, other in zip(found.placements, made.wall.placements, strict=True):
-            assert np.abs(one.settled.corners - other.settled.corners).max() < 1e-9
-
-
 @repeatable(80)
 @given(
     stones(stone_id=6, max_px=12),
@@ -97,10 +78,6 @@ def test_wall_that_cannot_be_built_is_refused_with_the_step():
     for said, plan, given_stones in (
         ("E212 step 3: ", made.plan, others),
         ("E217 settings: ", unknown, made.stones),
-        # Of plans that were edited the stones are the right ones.
-        ("E213 step 2: ", changed(made.plan, 5, stone=3), made.stones),
-        ("E214 step 2: ", replace(made.plan, steps=made.plan.steps[1:]), made.stones),
-        ("E220 step 2: ", moved(made.plan, 5, 500, 0), made.stones),
         ("E221 step 2: ", moved(made.plan, 5, -25, 0), made.stones),
     ):
         with pytest.raises(PlanError, match=f"{said}.* Correct the plan, or give its own stones"):

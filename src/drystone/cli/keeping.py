@@ -212,21 +212,15 @@ def earlier_run(request: PlanRequest) -> Earlier:
 def _differences(plan: Plan, asked: Mapping[str, Any], asked_method: str) -> list[str]:
     """Name what a plan was made of that is not what is asked for, as :func:`made_of` has it."""
     wall, method, settings = asked["--wall"], plan.method, _without_budget(plan.settings)
-    same_wall = _same_wall(_wall_px(plan, asked["--px-per-m"]), wall)
+    px_per_m = asked["--px-per-m"] or 1.0
+    wall_px = plan.width * px_per_m, plan.height * px_per_m
+    same_wall = np.allclose(wall_px, wall, rtol=0, atol=1e-6)
     own = (
         plan.source["sha256"], plan.source.get("reading", {}), wall if same_wall else None,
         plan.px_per_m, plan.working_scale, plan.seed,
         asked["--method"] if method == asked_method else method, settings,
     )  # fmt: skip
     return [name for name, value in zip(asked, own, strict=True) if value != asked[name]]
-
-
-def _wall_px(plan: Plan, px_per_m: float | None) -> tuple[float, float]:
-    return plan.width * (px_per_m or 1.0), plan.height * (px_per_m or 1.0)
-
-
-def _same_wall(one: tuple[float, float], other: tuple[float, float]) -> bool:
-    return bool(np.allclose(one, other, rtol=0, atol=1e-6))
 
 
 def _refuse(different: list[str], path: Path) -> None:

@@ -137,10 +137,7 @@ def _table(texts: Mapping[str, str]) -> str:
     lines = []
     for task, names in (_TASKS | rest).items():
         known = [name for name in names if name in texts]
-        firsts = (task if name == known[0] else "" for name in known)
-        lines += [
-            f"{first:6} {name:10} {texts[name]}" for first, name in zip(firsts, known, strict=True)
-        ]
+        lines += [f"{'' if i else task:6} {name:10} {texts[name]}" for i, name in enumerate(known)]
     return "\n".join(lines)
 
 

@@ -36,8 +36,7 @@ SHOWN = (
 def add_settings(command: argparse.ArgumentParser) -> None:
     """Add the options that say how a wall is planned."""
     # fmt: off
-    group = command.add_argument_group("method")
-    option = group.add_argument
+    option = command.add_argument_group("method").add_argument
     option("--method", default="best", metavar="NAME", help="best (default) or paper")
     option("--settings", metavar="FILE.toml", help="settings that replace those of the method")
     option("--set", type=_setting, action="append", default=[], metavar="NAME=VALUE",

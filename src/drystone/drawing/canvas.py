@@ -169,6 +169,13 @@ def fit_axes(ax: Axes | None, box: Bounds) -> Axes:
     return ax
 
 
+def name_axes(ax: Axes, across: str, up: str) -> None:
+    """Write what is drawn at both axes of a chart."""
+    ax.set_xlabel(across, fontsize=8)
+    ax.set_ylabel(up, fontsize=8)
+    ax.tick_params(labelsize=7)
+
+
 def block_path(loops: Iterable[Loop]) -> Path:
     """Join loops into one path; clockwise loops are holes."""
     return Path.make_compound_path(*(Path([*loop, loop[0]], closed=True) for loop in loops))

@@ -20,7 +20,6 @@ GREY = "#8c8c8c"
 SECOND_TONE = 0.6
 """Lightness of the colours of cluster 17 and on, as a share of the first sixteen's."""
 
-
 Rgb = tuple[float, float, float]  # sRGB, each part in [0, 1]
 
 

@@ -39,14 +39,13 @@ class Checkpoint:
 
 def write_checkpoint(checkpoint: Checkpoint, folder: Path) -> None:
     """Write a checkpoint into the folder of its plan."""
-    data = as_json(
-        {
-            "schema": SCHEMA,
-            "version": version("drystone"),
-            "made_of": checkpoint.made_of,
-            "search": checkpoint.state,
-        }
-    )
+    kept = {
+        "schema": SCHEMA,
+        "version": version("drystone"),
+        "made_of": checkpoint.made_of,
+        "search": checkpoint.state,
+    }
+    data = as_json(kept)
     text = f'{{"sha256": "{_digest(data)}",\n"data": {data}}}\n'
     write_whole(folder / CHECKPOINT, text.encode())
 

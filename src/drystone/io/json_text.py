@@ -10,7 +10,7 @@ from contextlib import suppress
 from functools import cache
 from pathlib import Path
 from types import UnionType
-from typing import Any, Literal, TypeVar, get_args, get_origin, get_type_hints
+from typing import Any, Literal, get_args, get_origin, get_type_hints
 
 import numpy as np
 
@@ -65,9 +65,6 @@ def _depth(text: str) -> int:
     return int(np.cumsum(steps, dtype=np.int32).max(initial=0))
 
 
-Value = TypeVar("Value")
-
-
 def as_json(value: Any) -> str:
     """Return a value as JSON: dataclasses as objects, tuples as lists, floats with all digits.
 
@@ -100,27 +97,28 @@ def to_plain(kind: Any, value: Any) -> Any:
     return float(value) + 0.0 if float in (kind, *kinds) else value
 
 
-def from_plain(kind: type[Value], data: Any) -> Value:
-    """Return what :func:`as_json` was given, once its JSON is read."""
-    found: Value = _read(kind, data)
-    return found
-
-
-def _read(kind: Any, data: Any) -> Any:
+def from_plain(kind: Any, data: Any) -> Any:
+    """Return what :func:`as_json` was given, of a type, once its JSON is read."""
     origin, kinds = get_origin(kind), get_args(kind)
-    if dataclasses.is_dataclass(kind):
-        return _dataclass(kind, data)
+    if isinstance(kind, type) and dataclasses.is_dataclass(kind):
+        types = _types(kind)
+        if not isinstance(data, dict) or data.keys() != types.keys():
+            raise ValueError(f"this is not of type {kind.__name__}")
+        return kind(**{name: from_plain(one, data[name]) for name, one in types.items()})
     if origin is UnionType:
         for one in kinds[:-1]:
             with suppress(ValueError):
-                return _read(one, data)
-        return _read(kinds[-1], data)
+                return from_plain(one, data)
+        return from_plain(kinds[-1], data)
     if origin is tuple:
-        return _tuple(kinds, data)
+        if not isinstance(data, list) or (len(data) != len(kinds) and kinds[-1] is not Ellipsis):
+            raise ValueError(f"this is not a list of {len(kinds)} values")
+        several = kinds[:1] * len(data) if kinds[-1] is Ellipsis else kinds
+        return tuple(from_plain(one, item) for one, item in zip(several, data, strict=True))
     if kind is float and isinstance(data, int | float) and not isinstance(data, bool):
         return _float(data)
     if origin is Mapping and isinstance(data, dict):
-        data = {name: _read(kinds[1], item) for name, item in data.items()}
+        data = {name: from_plain(kinds[1], item) for name, item in data.items()}
         known = True
     elif origin is Literal:
         known = isinstance(data, str) and data in kinds
@@ -129,21 +127,6 @@ def _read(kind: Any, data: Any) -> Any:
     if known:
         return data
     raise ValueError(f"{str(data)[:40]!r} is not of type {kind}")
-
-
-def _dataclass(kind: Any, data: Any) -> Any:
-    types = _types(kind)
-    if not isinstance(data, dict) or data.keys() != types.keys():
-        raise ValueError(f"this is not of type {kind.__name__}")
-    return kind(**{name: _read(one, data[name]) for name, one in types.items()})
-
-
-def _tuple(kinds: Sequence[Any], data: Any) -> Any:
-    if isinstance(data, list) and kinds[-1] is Ellipsis:
-        return tuple(_read(kinds[0], item) for item in data)
-    if not isinstance(data, list) or len(data) != len(kinds):
-        raise ValueError(f"this is not a list of {len(kinds)} values")
-    return tuple(_read(kind, item) for kind, item in zip(kinds, data, strict=True))
 
 
 def _float(data: float) -> float:

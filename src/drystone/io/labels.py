@@ -184,19 +184,16 @@ def _ground_notice(name: str, there: NDArray[np.bool_], cure: str = "") -> Notic
 
 def _check_no_stone_of_zero(image: IdImage, ground: NDArray[np.bool_], *, named: bool) -> None:
     """Refuse stones of the value 0 on ground that is something else (E108)."""
-    if image.background != 0:
-        return
     zero = (image.ids == 0) & ~ground
-    if not zero.any():
+    if image.background != 0 or not zero.any():
         return
     corners = ground[[0, 0, -1, -1], [0, -1, 0, -1]].sum() >= 3
-    inner = np.zeros_like(zero)
-    inner[_RIM:-_RIM, _RIM:-_RIM] = True
+    inner_px = np.count_nonzero(zero[_RIM:-_RIM, _RIM:-_RIM])
     # Whether a piece as large as a stone has only ground around it.
     found, count = components(zero)
     alone = np.bincount(found.ravel(), minlength=count + 1) >= _LEAST_PX
     alone[ndimage.maximum_filter(found, 3)[~ground & ~zero]] = False
-    if named or (corners and not (zero & ~inner).any() and alone[1:].any()):
+    if named or (corners and inner_px == np.count_nonzero(zero) and alone[1:].any()):
         raise LabelImageError(
             "E108",
             f"{int(zero.sum())} px are 0 on a background that is another value or transparent, "

@@ -4,7 +4,7 @@ import math
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import chain
+from itertools import accumulate, chain
 from typing import Any
 
 import numpy as np
@@ -165,9 +165,7 @@ def stone_set(
     Numbers `taken` are those of the file, also of what is left out; `larger` is how to read it so
     that none is too small.
     """
-    pieces_so_far = 0
-    for patch in found:
-        pieces_so_far += len(patch.piece_areas_px)
+    for pieces_so_far in accumulate(len(patch.piece_areas_px) for patch in found):
         check_count(pieces_so_far)
     numbers = piece_numbers(found, settings, taken)
     known = {patch.id for patch in found}.union(*numbers.values())

@@ -55,15 +55,9 @@ class PhotoSidecar:
 
 def write_sidecar(sidecar: PhotoSidecar, folder: Path) -> Path:
     """Write it into the folder of the label image."""
-    data = {
-        "schema": SCHEMA,
-        "labels": sidecar.labels,
-        "width_px": sidecar.width_px,
-        "height_px": sidecar.height_px,
-        "px_per_m": sidecar.px_per_m,
-        "photo": sidecar.photo,
-        **sidecar.details,
-    }
+    names = ("labels", "width_px", "height_px", "px_per_m", "photo")
+    known = {name: getattr(sidecar, name) for name in names}
+    data = {"schema": SCHEMA, **known, **sidecar.details}
     path = folder / SIDECAR
     write_whole(path, (json.dumps(data, indent=1, ensure_ascii=False) + "\n").encode())
     return path

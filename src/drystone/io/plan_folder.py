@@ -100,12 +100,8 @@ def blocks_to_json(wall: Wall, model: RigidBlockModel) -> dict[str, Any]:
 
     Its scale and the poses of its stones tell whether a plan is that of the same wall.
     """
-    outlines = wall.exact
     px_per_m = wall.site.px_per_m or 1.0
-    polygons = {
-        block: (outlines.polygons.polygon(place) / px_per_m).tolist()
-        for place, block in enumerate(outlines.ids)
-    }
+    polygons = {block: (corners / px_per_m).tolist() for block, corners in wall.exact.blocks}
     poses = {
         placement.stone_id: {
             "angle_deg": placement.posed.angle_deg,

@@ -128,7 +128,8 @@ def _step_from_json(data: Mapping[str, Any]) -> StoneStep | WedgeStep:
     values |= {field.name: int(data[field.name]) for field in fields(step) if field.type is int}
     if step is StoneStep:
         values["indices"] = {name: data["indices"][name] for name in INDEX_NAMES}
-    return from_plain(step, values)
+    found: StoneStep | WedgeStep = from_plain(step, values)
+    return found
 
 
 def plan_from_json(data: Any, where: str = "plan") -> Plan:

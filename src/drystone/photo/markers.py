@@ -184,15 +184,10 @@ def _edge(grey: NDArray[np.uint8], corners: Points, modules: int) -> tuple[Point
     places = start + _ALONG[:, None] * (end - start)
     at = places[:, None, :] + reach * _ACROSS[:, None] * outward
     cv2 = load_cv2()
-    seen = cv2.remap(
-        grey,
-        (at[..., 0] - 0.5).astype(np.float32),
-        (at[..., 1] - 0.5).astype(np.float32),
-        cv2.INTER_LINEAR,
-        borderMode=cv2.BORDER_REPLICATE,
-    ).astype(np.float64)
+    x, y = ((at[..., axis] - 0.5).astype(np.float32) for axis in (0, 1))
+    seen = cv2.remap(grey, x, y, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
     # Lenses blur light, not the grey values of sRGB, in which black squares would seem smaller.
-    light = 255.0 * ((seen / 255.0 + 0.055) / 1.055) ** 2.4
+    light = 255.0 * ((seen.astype(np.float64) / 255.0 + 0.055) / 1.055) ** 2.4
     # Light changes along an edge, but slowly.
     ends = len(_ACROSS) // 5
     dark = np.polyval(np.polyfit(_ALONG, light[:, :ends].mean(axis=1), 1), _ALONG)

@@ -55,15 +55,9 @@ def scale_and_view(
     used, notices = _usable(found, layout)
     groups = sorted({layout.group(marker.id) for marker in used})
     papers = [[marker for marker in used if layout.group(marker.id) == one] for one in groups]
-    fitted = fit_plane(
-        [
-            (
-                np.concatenate([marker.corners_px for marker in paper]),
-                np.concatenate([layout.corners_m(marker.id) for marker in paper]),
-            )
-            for paper in papers
-        ]
-    )
+    seen = [np.concatenate([one.corners_px for one in paper]) for paper in papers]
+    printed = [np.concatenate([layout.corners_m(one.id) for one in paper]) for paper in papers]
+    fitted = fit_plane([*zip(seen, printed, strict=True)])
     if fitted is None:
         raise _disagreement("No view of the ground gives all of them their size")
     to_plane = fitted.to_plane
@@ -176,9 +170,7 @@ def _too_few(
 
 
 def _believed(
-    papers: Sequence[Sequence[FoundMarker]],
-    layout: MarkerLayout,
-    fitted: CommonPlane,
+    papers: Sequence[Sequence[FoundMarker]], layout: MarkerLayout, fitted: CommonPlane
 ) -> float:
     """Return the residual of all corners, metres; refuse markers that disagree (E172)."""
     # Perspective can hide from the residual that sizes differ.
@@ -328,13 +320,9 @@ def direct(source: Points, target: Points) -> Points:
     x, y = source.T
     u, v = target.T
     one, none = np.ones_like(x), np.zeros_like(x)
-    rows = np.concatenate(
-        [
-            np.column_stack([x, y, one, none, none, none, -u * x, -u * y, -u]),
-            np.column_stack([none, none, none, x, y, one, -v * x, -v * y, -v]),
-        ]
-    )
-    solution = np.linalg.svd(rows)[2][-1].reshape(3, 3)
+    of_u = np.column_stack([x, y, one, none, none, none, -u * x, -u * y, -u])
+    of_v = np.column_stack([none, none, none, x, y, one, -v * x, -v * y, -v])
+    solution = np.linalg.svd(np.concatenate([of_u, of_v]))[2][-1].reshape(3, 3)
     return np.asarray(solution / solution[2, 2])
 
 

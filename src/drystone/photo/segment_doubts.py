@@ -102,15 +102,10 @@ def ruler_doubts(labels: NDArray[np.uint16], ends_px: ArrayLike) -> tuple[Doubt,
         there = labels[rows, cols]
         for stone in np.unique(there[there > 0]).tolist():
             along[stone] = along.get(stone, np.zeros(len(there), bool)) | (there == stone)
-    middle = (one + other) / 2
-    return tuple(
-        Doubt(
-            "W179", (stone,), (float(middle[0]), float(middle[1])),
-            f"stone {stone} lies along --ruler and may be the ruler",
-        )
-        for stone, hit in sorted(along.items())
-        if hit.mean() >= _RULED
-    )  # fmt: skip
+    x, y = ((one + other) / 2).tolist()
+    ruled = sorted(stone for stone, hit in along.items() if hit.mean() >= _RULED)
+    said = "lies along --ruler and may be the ruler"
+    return tuple(Doubt("W179", (stone,), (x, y), f"stone {stone} {said}") for stone in ruled)
 
 
 def notices_of(doubts: Iterable[Doubt]) -> tuple[Notice, ...]:

@@ -159,15 +159,13 @@ def _statistics(
     colour = lab_of(np.exp(log_ground)[None, None])[0, 0].astype(float)
     values = lab[usable][:: max(1, int(usable.sum()) // 200_000)]
     limit = 1.6 * _NEAR
-    for _ in range(3):
+    for left in (3, 2, 1, 0):
         near = values[np.linalg.norm(values - colour, axis=-1) < limit]
         if len(near) < 10:
-            break
-        colour = np.median(near, axis=0).astype(float)
-        limit = np.clip(4 * 1.48 * np.median(np.linalg.norm(near - colour, axis=-1)), 8.0, 30.0)
-    near = values[np.linalg.norm(values - colour, axis=-1) < limit]
-    if len(near) < 10:
-        return colour, np.full(3, 0.8), 0.0
+            return colour, np.full(3, 0.8), 0.0
+        if left:
+            colour = np.median(near, axis=0).astype(float)
+            limit = np.clip(4 * 1.48 * np.median(np.linalg.norm(near - colour, axis=-1)), 8.0, 30.0)
     spread = 1.48 * np.median(np.abs(near - colour), axis=0)
     return colour, np.maximum(spread, 0.8), len(near) / len(values)
 

@@ -94,9 +94,7 @@ def segment_photo(
     else:
         share = min(1.0, math.sqrt(max_px / (height * width)))
         size = (max(1, int(width * share)), max(1, int(height * share)))
-        picture = image
-        if share < 1.0:
-            picture = np.asarray(Image.fromarray(image).resize(size, Image.Resampling.LANCZOS))
+        picture = np.asarray(Image.fromarray(image).resize(size, Image.Resampling.LANCZOS))
         inside = without_bands(picture)
         by = (size[0] / width, size[1] / height)
         from_photo = np.diag([*by, 1.0])

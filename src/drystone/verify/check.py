@@ -141,6 +141,7 @@ def _check_stages(
     prefixes, problems = [], list[Problem]()
     unit, wall = replay.site.units_per_px, replay.wall
     settings, stock = reference.settings, reference.stock
+    limits = wedge_limits(settings, stock, wall.site)
     steps = {p.id: p.step for p in replay.pieces if isinstance(p.step, WedgeStep)}
     for stage in replay.stages:
         model = claims.wall_model(stage.after, settings)
@@ -159,14 +160,9 @@ def _check_stages(
                     step, wedge, stage.after.labels, settings.stabilise, stock.mean_height_px
                 )
                 continue
+            bare, every = model or RigidBlockModel((), (), settings.mu), wall.outlines.polygons
             problems += pieces.check_settled_wedge(
-                step,
-                wedge.corners,
-                model or RigidBlockModel((), (), settings.mu),
-                settled.corners,
-                wall.outlines.polygons,
-                wall.site.extent_px[0],
-                wedge_limits(settings, stock, wall.site),
+                step, wedge.corners, bare, settled.corners, every, wall.site.extent_px[0], limits
             )
     return models, prefixes, problems
 

@@ -82,18 +82,11 @@ def say(text: str) -> None:
     print(text, file=sys.stderr, flush=True)
 
 
-BENCH = Command(
-    "Test the numbers, and compare ways of choosing stones.",
-    add_bench,
-    run_of("drystone_lab.commands.bench"),
-)
-REPRODUCE = Command(
-    "Make the tables and figures of the paper again.",
-    add_reproduce,
-    run_of("drystone_lab.commands.reproduce"),
-)
-FETCH = Command(
-    "Download published stone sets, with licence and citation.",
-    add_fetch,
-    run_of("drystone_lab.commands.fetch"),
+BENCH, REPRODUCE, FETCH = (
+    Command(about, options, run_of(f"drystone_lab.commands.{name}"))
+    for name, options, about in (
+        ("bench", add_bench, "Test the numbers, and compare ways of choosing stones."),
+        ("reproduce", add_reproduce, "Make the tables and figures of the paper again."),
+        ("fetch", add_fetch, "Download published stone sets, with licence and citation."),
+    )
 )

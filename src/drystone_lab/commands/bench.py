@@ -92,14 +92,13 @@ def _tables(arguments: argparse.Namespace, suite: str) -> Sequence[Table]:
     if arguments.again and arguments.store is None:
         cure = "Nothing is kept without --store, so all runs are done."
         raise _useless("it would do nothing here.", "--again", cure)
-    for folder in (arguments.output, arguments.store):
-        if folder is not None:
-            make_folder(Path(folder))
-    policies = arguments.policy or (("paper", "random") if public else ())
     output, runs, store = (
         None if given is None else Path(given)
         for given in (arguments.output, arguments.runs, arguments.store)
     )
+    for folder in filter(None, (output, store)):
+        make_folder(folder)
+    policies = arguments.policy or (("paper", "random") if public else ())
     file = arguments.settings
     changes = () if file is None else flat_changes(read_toml(Path(file)), file)
     settings = BenchSettings(

@@ -16,6 +16,7 @@ from scipy import ndimage
 from skimage.draw import polygon2mask
 from skimage.transform import downscale_local_mean, matrix_transform, warp
 
+from drystone.drawing.palette import linear, rgb
 from drystone.generate import FourierSettings, RubbleSettings, fourier_stones, rubble_stones
 from drystone.kernels.raster import Mask
 from drystone.photo.layout import ON_A_SHEET, MarkerLayout, page_mm, parse_layout
@@ -66,7 +67,6 @@ LEVELS = tuple(
     for level in _FILE["levels"]
 )
 """Test photographs, from easy to hard."""
-
 
 Labels = NDArray[np.uint16]
 Window = tuple[slice, slice]
@@ -180,15 +180,13 @@ Light = NDArray[np.float32]
 """(h, w, 3), linear, 0 to 1 for what a camera can record."""
 
 
-def linear(colour: str) -> NDArray[np.float32]:
+def _light(colour: str) -> NDArray[np.float32]:
     """Return the linear light of ``"#rrggbb"``.
 
-    >>> [round(float(part), 3) for part in linear("#ff8000")]
+    >>> [round(float(part), 3) for part in _light("#ff8000")]
     [1.0, 0.216, 0.0]
     """
-    value = np.array([int(colour[k : k + 2], 16) for k in (1, 3, 5)]) / 255
-    low = value / 12.92
-    return np.where(value <= 0.04045, low, ((value + 0.055) / 1.055) ** 2.4).astype(np.float32)
+    return np.array([*map(linear, rgb(colour))], np.float32)
 
 
 def clouds(
@@ -209,7 +207,7 @@ def clouds(
 def stone_face(rock: Rock, shape: tuple[int, int], rng: Generator) -> Light:
     """Return the surface of a stone, flat and evenly lit: clouds, specks and veins on a colour."""
     colours, cloudy, speckled, veined = _FILE["rocks"][rock].values()
-    base = linear(colours[int(rng.integers(len(colours)))])
+    base = _light(colours[int(rng.integers(len(colours)))])
     base = base * np.float32(rng.uniform(0.85, 1.15))
     size = max(shape)
     light = cloudy * clouds(shape, [(size / k, size / k) for k in (2, 4, 9, 20)], rng, 0.7)
@@ -252,7 +250,7 @@ def ground_surface(ground: GroundKind, shape: tuple[int, int], rng: Generator) -
             patches = noise((220, 220), (70, 70))
             light = np.exp(0.35 * blades + 0.12 * patches)
             redder = 0.12 * patches
-    colour = linear(_FILE["grounds"][ground]) * light[..., None]
+    colour = _light(_FILE["grounds"][ground]) * light[..., None]
     colour[..., 0] *= 1 + redder
     return np.asarray(np.clip(colour, 0.005, 1.0), np.float32)
 

@@ -12,8 +12,9 @@ import numpy as np
 from matplotlib.figure import Figure
 from scipy.stats import rankdata, wilcoxon
 
+from drystone.drawing.canvas import name_axes
 from drystone_lab.cells import LEVEL, LOWER_IS_BETTER, differences, interval_of, median_of
-from drystone_lab.pictures import LOOKS, name_axes, panel_sheet
+from drystone_lab.pictures import LOOKS, panel_sheet
 from drystone_lab.public.store import NOT_SHAKEN, PLACED, SHAKE, KeptRun
 from drystone_lab.table import BENCH, Cell, Table, worded
 

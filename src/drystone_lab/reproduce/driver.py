@@ -11,11 +11,10 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any, Literal, NamedTuple
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from PIL import PngImagePlugin
 
 from drystone.drawing.canvas import save
-from drystone.drawing.report.html import HERE
+from drystone.drawing.report.html import HERE, templates_in
 from drystone.errors import DrystoneError, UsageError, counted
 from drystone.io.folder_lock import has_files
 from drystone.io.published import SETS
@@ -159,13 +158,7 @@ def _words(table: Mapping[str, Any]) -> list[bool]:
 
 
 def _write(path: Path, **content: object) -> Path:
-    environment = Environment(
-        loader=FileSystemLoader([Path(__file__).parent, HERE]),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
+    environment = templates_in(Path(__file__).parent, HERE)
     environment.globals |= {
         "heading": heading, "part": part, "counted": counted, "duration": duration,
         "written": written, "words": _words, "LONG": LONG, "SHOWN": SHOWN,

@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 from scipy.cluster.hierarchy import ward
 
 from drystone.clusters import ClusterSettings, cluster_stones, stone_features
+from drystone.drawing.canvas import name_axes
 from drystone.drawing.palette import OUTLINE_COLOUR, cluster_colour
 from drystone.drawing.pictures.stones import plot_stones
 from drystone.model.stone import StoneSet
 from drystone.poses import PoseBook
 from drystone_lab.cells import rounded
-from drystone_lab.pictures import name_axes
 from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem
 from drystone_lab.table import Rows
 from drystone_lab.walls import MASONS, PR, Target

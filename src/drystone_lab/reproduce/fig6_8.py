@@ -251,7 +251,6 @@ INDICES = PaperItem(
     pictures=_pictures,
 )
 
-
 OPACITY = 0.85
 
 

@@ -31,7 +31,7 @@ from drystone.statics.limit import lateral_resistance
 from drystone_lab import cells
 from drystone_lab import pictures as sheets
 from drystone_lab.cells import METRICS, rounded
-from drystone_lab.reproduce.item import Context, ItemFigure, PaperItem, StudyWalls, Trials
+from drystone_lab.reproduce.item import Context, ItemFigure, PaperItem, Trials
 from drystone_lab.reproduce.items import ITEMS
 from drystone_lab.runs.outcome import RunOutcome
 from drystone_lab.table import Cell, Rows
@@ -270,14 +270,6 @@ class FiveWall(NamedTuple):
         return best_trial(self.trials.outcomes)
 
 
-def five_walls(found: StudyWalls) -> list[FiveWall]:
-    """Read the masons' walls."""
-    return [
-        FiveWall(one, None if one.wall.stand_in else masons_wall(one.wall, one.data))
-        for one in found
-    ]
-
-
 def _references(wall: FiveWall) -> Rows:
     number, name = wall.trials.wall.number, wall.trials.wall.name
     papers = REFERENCES.get(number, NONE)
@@ -333,7 +325,10 @@ def _five_panels(wall: FiveWall) -> list[sheets.Panel]:
 
 
 TABLE2 = PaperItem(
-    then=five_walls,
+    then=lambda found: [
+        FiveWall(one, None if one.wall.stand_in else masons_wall(one.wall, one.data))
+        for one in found
+    ],
     tables={
         # Rows of each wall, our figures and the paper's beside each other
         "table2": lambda walls: [
@@ -346,7 +341,6 @@ TABLE2 = PaperItem(
         )
     ],
 )
-
 
 Way = tuple[str, tuple[JointPath, ...], int, int]
 """Name, paths, length of a straight one in px, and how many Fig. 17 draws."""

@@ -1,6 +1,5 @@
 """The method itself: Table 1, and Figs. 3, 4, 10, 11 and 12 on a real run."""
 
-from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from itertools import islice
 from types import SimpleNamespace
@@ -199,7 +198,6 @@ RIGID = PaperItem(
     pictures=lambda found: [_two_picture(found)],
 )
 
-
 NORMAL_PX = 2.5
 """Length of the normal of a pixel edge."""
 
@@ -248,15 +246,12 @@ def blocks(context: Context, wall: Target = PR) -> Blocks:
 
 def three_stones(wall: Wall) -> Labels:
     """Return the picture of three stones of a wall: two on the ground, and one on both."""
-    touches: dict[int, set[int]] = defaultdict(set)
-    for interface in model_from_labels(wall.labels).model.interfaces:
-        touches[interface.block].add(interface.other)
-        touches[interface.other].add(interface.block)
+    model = model_from_labels(wall.labels).model
     order = [placement.stone_id for placement in wall.placements]
-    on_ground = [stone for stone in order if GROUND in touches[stone]]
+    on_ground = [stone for stone in order if GROUND in model.touched_by(stone)]
     group = set(order[:3])
     for top in order:
-        below = sorted(touches[top].intersection(on_ground), key=order.index)
+        below = sorted({*model.touched_by(top)}.intersection(on_ground), key=order.index)
         if top not in on_ground and len(below) >= 2:
             group = {top, *below[:2]}
             break

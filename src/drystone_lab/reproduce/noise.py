@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 from scipy.stats import binomtest
 
 from drystone.contacts.gaps import model_with_closed_gaps
+from drystone.drawing.canvas import name_axes
 from drystone.drawing.palette import CLUSTER_COLOURS, GREY, OUTLINE_COLOUR
 from drystone.metrics.frame import reduce_labels
 from drystone.metrics.measure import WallMetrics, measure_labels
@@ -250,7 +251,7 @@ def _over_noise(levels: Sequence[NoiseLevel]) -> ItemFigure:
                 x += [level.noise + shift for _, shift in zip(found, cycle(SHIFTS), strict=False)]
                 y += found
             ax.plot(x, y, label=words, gid=words, **look)
-        pictures.name_axes(ax, "noise, %", name if name in {"F_SF", "F_LR"} else f"{name}, %")
+        name_axes(ax, "noise, %", name if name in {"F_SF", "F_LR"} else f"{name}, %")
         ax.grid(axis="y", color=GREY, linewidth=0.3, alpha=0.5)
         ticks = [f"{one.noise}{'*' * one.ours.wall.stand_in}" for one in levels]
         ax.set_xticks([level.noise for level in levels], ticks)

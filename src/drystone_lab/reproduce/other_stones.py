@@ -184,7 +184,6 @@ def head_joints(course: Sequence[Brick]) -> list[float]:
 ASPECTS = (2.0, 3.0)
 HEIGHT_PX = 12
 
-
 Bricks = Sequence[tuple[float, Trials, Wall]]
 """Aspect, run and wall; all aspects from one side, then from both."""
 

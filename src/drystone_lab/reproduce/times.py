@@ -44,20 +44,12 @@ PROCEDURES: Mapping[str, tuple[Part, ...]] = {
 }
 """The paper's, by our parts."""
 
-
-def by_sampling(context: Context, wall: Target = PR) -> StepWalls:
-    """Time a wall with either sampling."""
-    walls = {sampling: timed(context, wall, {"sampling": sampling}) for sampling in SAMPLINGS}
-    return StepWalls(walls, context.data)
-
-
 RELEASED: Mapping[str, str] = {
     "variant": "PR_filter.txt", "full": "PR_filter_full.txt",
     "0.5": "PR_filter_reso025_image_conv.txt", "1.0": "PR_filter.txt",
     "1.5": "PR_filter_reso075_image_conv.txt", "2.0": "PR_filter_reso1_image_conv.txt",
 }  # fmt: skip
 """Times of the authors by sampling or scale, as they released them: a row a candidate."""
-
 
 Times = tuple[int, int, dict[str, float], int | None]
 """Steps, candidates, worker seconds by procedure, and the most places on the empty ground."""
@@ -161,7 +153,9 @@ def _candidates(found: StepWalls) -> Rows:
 
 
 STEPS = PaperItem(
-    study=by_sampling,
+    study=lambda context: StepWalls(
+        {name: timed(context, PR, {"sampling": name}) for name in SAMPLINGS}, context.data
+    ),
     claims=lambda found: step_findings(found.walls),
     tables={"candidates": _candidates},
     times={

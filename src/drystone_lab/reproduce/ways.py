@@ -208,17 +208,17 @@ WEDGES = PaperItem(
 )
 
 
-def _beta_picture(found: StudyWalls) -> ItemFigure:
+def _beta_picture(found: StudyWalls) -> Iterator[ItemFigure]:
     panels = {
         f"{group.name}, {figure}": {one.way: one.values(figure) for one in group}
         for group in found.by_wall
         for figure in METRICS
     }
     title = "Walls by the threshold beta of GDS; lines are medians"
-    return ItemFigure("beta", group_panels(panels, title=title))
+    yield ItemFigure("beta", group_panels(panels, title=title))
 
 
-BETA = PaperItem(pictures=lambda found: [_beta_picture(found)])
+BETA = PaperItem(pictures=_beta_picture)
 
 
 def _sampling_claims(found: StudyWalls) -> Iterator[Claimed]:

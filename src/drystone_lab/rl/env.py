@@ -83,21 +83,13 @@ class WallEnv(gymnasium.Env[WallObservation, np.int64]):
 
     A deep copy goes on by itself and shares the stones with the first.
 
-    Parameters
-    ----------
-    draw : DrawSettings, optional
-        What stones are drawn for an episode, unless :meth:`reset` is given some.
-    settings : PlannerSettings, optional
-        How places are found; :data:`drystone_lab.rl.episode.ARRIVING` when missing.
-    offers : int
-        How many places are offered at most, the lowest of them: the number of actions.
-    columns : int
-        Of the top profile that is seen.
-    illegal : {"aside", "error"}
-        What an action does that :meth:`action_masks` does not allow: the stone is put aside for a
-        reward of 0 (of the wall's joints and edges, when it was the last), or E151 is raised.
-    render_mode : {"rgb_array"} or None
-        ``"rgb_array"``: :meth:`render` draws the wall.
+    `draw` says what stones are drawn for an episode, unless :meth:`reset` is given some, `settings`
+    how places are found (:data:`drystone_lab.rl.episode.ARRIVING` when missing).  At most `offers`
+    places are offered, the lowest of them: the number of actions.  `columns` are those of the top
+    profile that is seen.  `illegal` is what an action does that :meth:`action_masks` does not
+    allow: with "aside" the stone is put aside for a reward of 0 (of the wall's joints and edges,
+    when it was the last), with "error" E151 is raised.  With the `render_mode` "rgb_array"
+    :meth:`render` draws the wall.
 
     Examples
     --------

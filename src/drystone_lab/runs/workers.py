@@ -91,7 +91,6 @@ def _client(distributed: Any, address: str, patience_s: float) -> Any:
 def _outcomes(
     distributed: Any, client: Any, specs: Sequence[RunSpec], data: Path | None
 ) -> Iterator[RunOutcome]:
-    """Do runs."""
     if not specs:
         return
     # pure: another client of the cluster may ask for the same run with another folder of data.
@@ -139,7 +138,6 @@ ONE_THREAD = (
 The matrices of a run are small: a search of four walls of PR came to the same bytes with one
 thread and with two, and took 3 to 5 % more processor time with two.
 """
-
 
 Task = TypeVar("Task")
 Done = TypeVar("Done")

@@ -166,12 +166,11 @@ def test_every_part_is_closed_and_at_its_place_in_order(reader, tmp_path):
 
 def test_colours_of_obj_are_those_of_the_clusters(tmp_path):
     exact = assembly("exact")
-    path, _ = FORMATS["obj"].write(exact, tmp_path, SETTINGS)
-    scene = trimesh.load_scene(path, split_objects=True, group_material=False, process=False)
-    for part in exact.parts:
-        assert scene.geometry[part.name].visual.material.name == material(part)[0]
+    path, _ = paths = FORMATS["obj"].write(exact, tmp_path, SETTINGS)
+    paints = {name: mesh.visual.material for name, mesh in obj(paths)}
+    assert [paints[part.name].name for part in exact.parts] == [material(p)[0] for p in exact.parts]
     (wedge,) = exact.wedges
-    assert scene.geometry[wedge.name].visual.material.diffuse.tolist() == [0x8B, 0, 0, 255]
+    assert paints[wedge.name].diffuse.tolist() == [0x8B, 0, 0, 255]
     # Numbers have all digits.
     lines = [line.split()[1:] for line in path.read_text().splitlines() if line.startswith("v ")]
     first = exact.parts[0].corners
@@ -229,23 +228,15 @@ def test_a_urdf_loads_with_mass_centre_and_inertia_of_its_meshes(tmp_path):
     assert len(dict(colours)) == len(colours)
 
 
-def test_a_prism_is_closed_and_faces_outward():
-    """A comb, with a corner in the middle of its back."""
+def test_a_comb_is_a_solid_and_an_outline_that_bounds_none_is_refused():
+    """The comb has a corner in the middle of its back."""
     back, teeth = [(0, 0), (2, 0), (5, 0), (5, 3), (4, 3)], [(4, 1), (3, 1), (3, 3), (2, 3)]
     outline = np.array([*back, *teeth, (2, 1), (1, 1), (1, 3), (0, 3)], float)
     solid = extruded(outline, -1.0, 2.0)
-    mesh = trimesh.Trimesh(solid.vertices, solid.triangles, process=False)
-    assert mesh.is_watertight
-    assert mesh.is_winding_consistent
-    assert len(solid.triangles) == 4 * len(outline) - 4
-    # Inside out, the volume would be negative.
+    mesh = mesh_of(solid.vertices, solid.triangles)
+    assert (mesh.is_watertight, mesh.is_winding_consistent) == (True, True)
     assert mesh.volume == pytest.approx(3.0 * shapely.Polygon(outline).area, rel=1e-12)
     assert mesh.face_normals == pytest.approx(solid.normals, abs=1e-12)
-    front = solid.vertices[solid.triangles][:, :, 1].max(axis=1) == -1.0
-    assert solid.normals[front].tolist() == [[0.0, -1.0, 0.0]] * (len(outline) - 2)
-
-
-def test_an_outline_that_bounds_no_solid_is_refused():
     crossing, flat = [(0, 0), (2, 2), (2, 0), (0, 2)], [(0, 0), (1, 0), (2, 0)]
     for corners in (crossing, [(0, 0), (2, 0), (1, 1), (2, 2), (0, 2), (1, 1)], flat):
         with pytest.raises(InputError, match=r"E180 .*stone_012"):

@@ -6,11 +6,6 @@ from tests.lab.reproduce.small_walls import context
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory):
-    return tmp_path_factory.mktemp("runs")
-
-
-@pytest.fixture(scope="module")
-def here(folder):
+def here(tmp_path_factory):
     """The context of items that are made from these runs."""
-    return context(folder)
+    return context(tmp_path_factory.mktemp("runs"))

@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 
-from drystone_lab.reproduce.construction import construction
 from drystone_lab.reproduce.item import Context, StudyWalls
 from drystone_lab.reproduce.items import item_named
 from drystone_lab.runs.outcome import FIGURES, Runner, RunOutcome
@@ -20,11 +19,6 @@ SHARP = Target("sharp", generated("polygon", 3, count=14, noise=0.3), 700, 300, 
 def context(folder, data=None):
     """A context that keeps its runs in a folder."""
     return Context(Runner(folder, data))
-
-
-def built(folder, wall):
-    """The run that the items look at."""
-    return construction(context(folder), wall)
 
 
 def on(name, *walls, seeds=2):

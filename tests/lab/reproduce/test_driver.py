@@ -75,15 +75,11 @@ def test_what_is_finished_is_not_made_again_and_planned_walls_not_planned_again(
         assert (made.status, planned) == (status, seeds)
     kept = make(tmp_path, "fig5", seed=2, quick=True)[0]
     assert (kept.status, kept.record) == ("kept", made.record)
-
-
-def test_a_file_that_is_gone_is_made_again_and_those_of_earlier_versions_go(tmp_path):
-    make(tmp_path, "fig5")
+    # A file that is gone is made again.
     (tmp_path / "fig5" / "filling.svg").unlink()
-    assert make(tmp_path, "fig5")[0].status == "made"
+    assert make(tmp_path, "fig5", seed=2, quick=True)[0].status == "made"
     (tmp_path / "fig5" / "fig5.json").write_text('{"schema": "drystone-item/1", "cut sh')
-    assert make(tmp_path, "fig5")[0].status == "made"
-    assert make(tmp_path, "fig5")[0].status == "kept"
+    assert make(tmp_path, "fig5", seed=2, quick=True)[0].status == "made"
     # Files of an earlier version go, those of others stay.
     (tmp_path / "mine.txt").write_text("mine")
     make(tmp_path, "fig5", items={"fig5": fakes.WORDS}, again=True)

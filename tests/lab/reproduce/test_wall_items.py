@@ -173,9 +173,7 @@ def test_rounded_stones(here):
     assert [row["kind"] for row in rows(output, "kinds")] == [w.name for w in (*kinds, *few)]
     assert [row["agrees"] for row in rows(output, "claims")] == [None] * 4  # too few walls
     assert [picture.name for picture in output.pictures] == ["fig26", "fig27"]
-
-
-def test_more_walls_tell_a_difference():
+    # More walls tell a difference.
     for firsts, count, holds in (((0.5, 0.6), 5, True), ((0.6, 0.5), 5, False),
                                  ((0.5, 0.6), 3, None)):  # fmt: skip
         walls = [

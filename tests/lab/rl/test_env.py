@@ -220,17 +220,14 @@ def test_builds_the_wall_of_the_planner_with_the_same_policy():
         assert episode.aside == len(stones) - len(planner.build.actions)
 
 
-def test_a_wall_is_over_when_it_is_full():
-    episode = Episode(Workshop.prepare(*bricks(6), ARRIVING))
+def test_keeps_the_lowest_of_the_offers_and_is_over_when_the_wall_is_full():
+    workshop = Workshop.prepare(*bricks(), ARRIVING)
+    episode = Episode(workshop)
     while not episode.over:
         lying = [k for k, offer in enumerate(episode.offers) if offer.width_px == 20]
         episode.take(lying[0])
     assert episode.build.wall.filling == 1.0
     assert (len(episode.build.actions), episode.aside, episode.waiting) == (4, 0, 2)
-
-
-def test_keeps_the_lowest_of_the_offers():
-    workshop = Workshop.prepare(*bricks(), ARRIVING)
     every, few = Episode(workshop).offers, Episode(workshop, most=3).offers
     heights, kept = ([offer.centroid_px[1] for offer in offers] for offers in (every, few))
     assert len(heights) > 3
@@ -250,10 +247,7 @@ def test_size_and_surplus_are_those_asked_for(kind):
     area = site.width_px * site.height_px
     assert stones.total_area_px / area == pytest.approx(1.3, rel=0.03)
     assert site.width_px / site.height_px == pytest.approx(2.0, rel=0.03)
-
-
-@pytest.mark.parametrize("kind", KINDS)
-def test_every_wall_that_may_be_drawn_is(kind):
+    # Every wall that may be drawn is.
     for stones in (3, 8, 40):
         for aspect in (1.0 / stones, 0.9, 2.5, stones):
             settings = DrawSettings(kinds=(kind,), stones=stones, size_px=8, aspect=aspect)

@@ -46,5 +46,4 @@ def picture(path, count=6):
 
 
 def kept(folder, spec):
-    """Return True when a run has an outcome that is kept."""
     return Runner(folder).kept(spec.key) is not None

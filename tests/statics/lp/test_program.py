@@ -65,18 +65,13 @@ def test_a_saved_program_is_the_program(tmp_path, growing):
 UNITS = Units(13.0, 170.0)
 
 
-def varied(labels):
-    """Heavier blocks, and other frictions here and there."""
+@pytest.mark.parametrize("labels", [coursed(5, 4, 90, 3), irregular(6, 14, 90, 60)])
+def test_it_grows_as_the_other_program_does(labels):
+    """Block by block or two at once, an interface lost at times; of many weights and frictions."""
     model = model_from_labels(labels).model
     blocks = [replace(b, density=(1.0, 2.5)[k % 2]) for k, b in enumerate(model.blocks)]
     interfaces = [replace(i, mu=(None, 0.3, 0.0)[k % 3]) for k, i in enumerate(model.interfaces)]
-    return RigidBlockModel(tuple(blocks), tuple(interfaces), 0.7)
-
-
-@pytest.mark.parametrize("labels", [coursed(5, 4, 90, 3), irregular(6, 14, 90, 60)])
-def test_it_grows_as_the_other_program_does(labels):
-    """Block by block or two at once, an interface lost at times."""
-    whole = varied(labels)
+    whole = RigidBlockModel(tuple(blocks), tuple(interfaces), 0.7)
     cones, model = ConeProgram.empty(UNITS), empty(whole.mu)
     rest = list(whole.blocks)
     while rest:
@@ -158,20 +153,16 @@ def test_duals_are_not_made_worse(monkeypatch):
     assert columns == pytest.approx(exact.columns, abs=1e-12)
 
 
-def standard(seed, rows, columns):
+@given(st.integers(0, 10**6), st.integers(1, 5), st.integers(1, 9))
+@repeatable(60)
+def test_small_programs_have_the_optimum_of_another_solver(seed, rows, columns):
+    """From any start, also from columns that depend on each other."""
     rng = np.random.default_rng(seed)
     matrix = rng.integers(-2, 3, (rows, columns)).astype(float)
     rhs = matrix @ rng.integers(0, 3, columns) if rng.random() < 0.7 else rng.normal(size=rows)
     basic = np.zeros(columns, bool)
     basic[rng.permutation(columns)[: int(rng.integers(0, rows + 1))]] = True
-    return rng.integers(-1, 4, columns).astype(float), matrix, rhs, basic
-
-
-@given(st.integers(0, 10**6), st.integers(1, 5), st.integers(1, 9))
-@repeatable(60)
-def test_small_programs_have_the_optimum_of_another_solver(seed, rows, columns):
-    """From any start, also from columns that depend on each other."""
-    costs, matrix, rhs, basic = standard(seed, rows, columns)
+    costs = rng.integers(-1, 4, columns).astype(float)
     expected = linprog(costs, A_eq=matrix, b_eq=rhs)
     for start in (None, basic):
         found = least(costs, csc_array(matrix), rhs, start)

@@ -58,8 +58,7 @@ def add(command: argparse.ArgumentParser) -> None:
         option(name, action="append", default=[], metavar="ID@X,Y:FX,FY",
                help=f"{text}, on block ID at (x, y) of the wall frame, up is positive; repeatable")
     option("--settle", type=int, metavar="ID", help="lower the fixed block ID: its reaction")
-    group = command.add_argument_group("scatter of the load multiplier (Monte Carlo)")
-    option = group.add_argument
+    option = command.add_argument_group("scatter of the load multiplier (Monte Carlo)").add_argument
     option("--scatter", type=numbers.whole_from(1), metavar="N", help="samples (default 200)")
     option("--precision", type=_precision, metavar="P%",
            help="noise of a builder: outlines P/2, places P of the mean stone size (a robot 1.5%%, "

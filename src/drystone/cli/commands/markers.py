@@ -54,18 +54,17 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     if not single and ids != FIRST_SHEET:
         options += ["--marker-ids", *map(str, ids)]
     if arguments.json:
-        print_json(
-            {
-                "file": str(path),
-                "pages": len(sheets.pages),
-                "ids": list(ids),
-                "size_m": size_m,
-                "dictionary": sheets.dictionary,
-                "page": sheets.page,
-                "layout": named,
-                "options": options,
-            }
-        )
+        told = {
+            "file": str(path),
+            "pages": len(sheets.pages),
+            "ids": list(ids),
+            "size_m": size_m,
+            "dictionary": sheets.dictionary,
+            "page": sheets.page,
+            "layout": named,
+            "options": options,
+        }
+        print_json(told)
         return ExitCode.DONE
     print(f"{path}: markers {ids[0]} to {ids[-1]}, {counted(len(sheets.pages), 'page')}")
     print(f"Print at 100 %. Then: drystone segment PHOTO {' '.join(options)} -o DIR")

@@ -20,13 +20,7 @@ from drystone.model.plan import Plan
 from drystone.model.steps import grouped, piece_id
 from drystone.physics.table import load_engine
 from drystone.search.closed_loop import rehearse_closed
-from drystone.search.rehearsal import (
-    Groups,
-    mean_size,
-    rehearse,
-    rehearse_in_engine,
-    tilt_as_built,
-)
+from drystone.search.rehearsal import Groups, mean_size, rehearse, rehearse_in_engine, tilt_as_built
 
 _PART = re.compile(r"(\d+(?:\.\d*)?|\.\d+)(px|mm|cm|m|ft|in|deg|%)")
 

@@ -47,8 +47,7 @@ def add(command: argparse.ArgumentParser) -> None:
     option("-o", "--output", required=True, metavar="DIR", help="folder to write to")
     option("--overwrite", action="store_true", help="write into a folder with files")
     numbers.add_scale(command)
-    group = command.add_argument_group("markers (they correct the perspective too)")
-    option = group.add_argument
+    option = command.add_argument_group("markers (they correct the perspective too)").add_argument
     option("--aruco", metavar="MARKERS",
            help="A4 or A4:50mm: the sheet of `drystone markers`; 120mm: single markers")
     option("--marker-ids", nargs="+", type=numbers.whole_from(0), metavar="ID",

@@ -60,36 +60,33 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     odd = numbers.scale_notice(median[0], px_per_m)
     notices = [str(notice) for notice in (*stones.notices, *converted, odd) if notice is not None]
     if arguments.json:
-        print_json(
-            {
-                "stones": len(stones),
-                "source": source.path,
-                "sha256": source.sha256,
-                "width_px": source.width_px,
-                "height_px": source.height_px,
-                "px_per_m": px_per_m,
-                "total_area_px": stones.total_area_px,
-                "median_area_px": median_area,
-                "clusters": {str(stone.id): clusters[stone.id] for stone in stones},
-                "notices": notices,
-            }
-        )
+        told = {
+            "stones": len(stones),
+            "source": source.path,
+            "sha256": source.sha256,
+            "width_px": source.width_px,
+            "height_px": source.height_px,
+            "px_per_m": px_per_m,
+            "total_area_px": stones.total_area_px,
+            "median_area_px": median_area,
+            "clusters": {str(stone.id): clusters[stone.id] for stone in stones},
+            "notices": notices,
+        }
+        print_json(told)
         return ExitCode.DONE
     area = f"{stones.total_area_px} px"
     metres = None if px_per_m is None else stones.total_area_px / px_per_m**2
-    print_table(
-        f"{source.path}: {counted(len(stones), 'stone')}",
-        [
-            ("image", f"{source.width_px} x {source.height_px} px"),
-            *([] if px_per_m is None else [("scale", f"{px_per_m:g} px a metre")]),
-            ("total area", area if metres is None else f"{metres:.3f} m² ({area})"),
-            ("median stone", f"{_size(median, px_per_m)}, {median_area:g} px²"),
-            ("largest stone", f"{largest.id}: {_size(sides[largest.id], px_per_m)}"),
-            ("clusters", str(max(clusters.values()))),
-            *[("notice", notice) for notice in notices],
-            *([] if to is None else [("written", str(to))]),
-        ],
-    )
+    rows = [
+        ("image", f"{source.width_px} x {source.height_px} px"),
+        *([] if px_per_m is None else [("scale", f"{px_per_m:g} px a metre")]),
+        ("total area", area if metres is None else f"{metres:.3f} m² ({area})"),
+        ("median stone", f"{_size(median, px_per_m)}, {median_area:g} px²"),
+        ("largest stone", f"{largest.id}: {_size(sides[largest.id], px_per_m)}"),
+        ("clusters", str(max(clusters.values()))),
+        *[("notice", notice) for notice in notices],
+        *([] if to is None else [("written", str(to))]),
+    ]
+    print_table(f"{source.path}: {counted(len(stones), 'stone')}", rows)
     return ExitCode.DONE
 
 

@@ -10,6 +10,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
+from drystone.drawing.canvas import name_axes
 from drystone.drawing.palette import CLUSTER_COLOURS, GREY, OUTLINE_COLOUR, WEDGE_COLOUR
 from drystone.kernels.raster import Floats
 from drystone.statics.result import LimitStatus
@@ -180,9 +181,7 @@ def plot_friction(
         xytext=(3, 0), textcoords="offset points",
     )  # fmt: skip
     ax.set_ylim(bottom=0.0)
-    ax.set_xlabel("coefficient of friction", fontsize=8)
-    ax.set_ylabel("load multiplier", fontsize=8)
-    ax.tick_params(labelsize=7)
+    name_axes(ax, "coefficient of friction", "load multiplier")
     ax.legend(fontsize=7, frameon=False)
     ax.spines[["top", "right"]].set_visible(False)
     return ax

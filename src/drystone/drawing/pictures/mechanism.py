@@ -209,9 +209,14 @@ def mechanism_frames(
     figure, motion = ax.figure.get_figure(root=True), motion_of(wall, mechanism)
     box = figure.get_tightbbox().padded(0.08)
     dpi = LONGER_SIDE_PX / max(box.width, box.height)
+    blocks = {patch.get_gid(): patch for patch in ax.patches if isinstance(patch, PathPatch)}
+    texts = {text.get_gid(): text for text in ax.texts}
     drawn: list[Image.Image] = []
     for step in range(frames // 2 + 1):
-        _move(ax, motion, (1.0 - np.cos(2.0 * np.pi * step / frames)) / 2.0)
+        for region in motion.at((1.0 - np.cos(2.0 * np.pi * step / frames)) / 2.0):
+            blocks[f"moved-{region.id}"].set_path(block_path(region.loops))
+            if (number := texts.get(f"number-{region.id}")) is not None:
+                number.set_position(region.centroid)
         with BytesIO() as file:
             figure.savefig(file, format="png", dpi=dpi, bbox_inches=box, facecolor="white")
             file.seek(0)
@@ -238,13 +243,3 @@ def save_mechanism_animation(
     greys = np.linspace(0.0, 1.0, GREY_COUNT)[:, None].repeat(3, axis=1)
     few = palette_of(np.vstack((greys, COLOURS(np.linspace(0.0, 1.0, COLOUR_COUNT))[:, :3])))
     write_whole(Path(path), gif_bytes(pictures, few, FRAME_MS))
-
-
-def _move(ax: Axes, motion: MechanismMotion, amplitude: float) -> None:
-    """Put the blocks and their numbers where they are after a share of the motion."""
-    blocks = {patch.get_gid(): patch for patch in ax.patches if isinstance(patch, PathPatch)}
-    numbers = {text.get_gid(): text for text in ax.texts}
-    for region in motion.at(amplitude):
-        blocks[f"moved-{region.id}"].set_path(block_path(region.loops))
-        if (number := numbers.get(f"number-{region.id}")) is not None:
-            number.set_position(region.centroid)

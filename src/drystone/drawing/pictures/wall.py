@@ -6,7 +6,7 @@ from pathlib import Path
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from drystone.drawing.canvas import add, draw, fit_axes, save
+from drystone.drawing.canvas import add, draw, fit_axes, name_axes, save
 from drystone.drawing.drawing import Surface, drawing_of_wall, step_by_id
 from drystone.drawing.palette import CLUSTER_COLOURS
 from drystone.drawing.pictures.mechanism import plot_mechanism
@@ -73,9 +73,7 @@ def plot_choice(walls: Sequence[Wall], figures: Sequence[WallFigures]) -> Figure
                 ax.plot([x], [y], "o", color=CLUSTER_COLOURS[0], markersize=4)
                 ax.annotate(f"{number:02}", (x, y), xytext=(3, 3), textcoords="offset points",
                             fontsize=7)  # fmt: skip
-        ax.set_xlabel(across, fontsize=8)
-        ax.set_ylabel(up, fontsize=8)
-        ax.tick_params(labelsize=7)
+        name_axes(ax, across, up)
     return figure
 
 

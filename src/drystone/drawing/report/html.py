@@ -75,13 +75,17 @@ def viewer_page(view: ViewerData, options: Mapping[str, Any] | None = None) -> s
 
 def rendered(template: str, data: Any, **more: Any) -> str:
     """Return a page, whose script and style are those of the viewer when no others are given."""
-    loader = FileSystemLoader([HERE, HERE.parent / "tracing"])
-    templates = Environment(
-        loader=loader, autoescape=True, undefined=StrictUndefined, trim_blocks=True,
-        lstrip_blocks=True,
-    )  # fmt: skip
+    templates = templates_in(HERE, HERE.parent / "tracing")
     own = {"data": json_in_html(data), "script": viewer_script(), "style": viewer_style()}
     return templates.get_template(template).render(own | more, policy=POLICY)
+
+
+def templates_in(*folders: Path) -> Environment:
+    """Return the templates of folders, in which nothing that is missing is passed over."""
+    return Environment(
+        loader=FileSystemLoader(folders), autoescape=True, undefined=StrictUndefined,
+        trim_blocks=True, lstrip_blocks=True,
+    )  # fmt: skip
 
 
 def _embedded(folder: Path | None, name: str) -> str | None:

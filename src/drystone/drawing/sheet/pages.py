@@ -136,7 +136,6 @@ DRAWING_MM = (297.0 - 2 * EDGE_MM - 18.0, 110.0)
 SCALE_MM = 60.0  # room for the scale at the right end of the head
 BLOCK_MM = 33.0  # height of the title block
 
-
 ROW_MM = 27.0, 34.0
 """Height of a line: the least, and the most where a page has few."""
 HEAD_MM = 19.0

@@ -76,7 +76,10 @@ def beside(assembly: Assembly, part: Part) -> dict[str, list[int]]:
         (a, b), (c, d) = ((p.corners[:, 0].min(), p.corners[:, 0].max()) for p in (part, neighbour))
         # How much of the narrower one is above or below the other one, 0 to 1.
         shared = (min(b, d) - max(a, c)) / min(b - a, d - c)
-        side = _side(push, upright=shared > CORNER)
+        x, y = push / max(float(np.hypot(*push)), 1e-300)
+        side = "right of" if x > 0 else "left of"
+        if shared > CORNER and abs(y) > STEEP:
+            side = "on" if y > 0 else "under"
         # Nobody sets a stone by a wedge beside it.
         if neighbour.step < part.step and (side == "on" or neighbour.kind == "stone"):
             found[side].append(neighbour.step)
@@ -124,12 +127,3 @@ def wedge_place(assembly: Assembly, wedge: Part) -> str:
     if share < 1 / 3:
         return "left end"
     return "middle" if share <= 2 / 3 else "right end"
-
-
-def _side(push: Points, *, upright: bool) -> str:
-    x, y = push / max(float(np.hypot(*push)), 1e-300)
-    if upright and y > STEEP:
-        return "on"
-    if upright and y < -STEEP:
-        return "under"
-    return "right of" if x > 0 else "left of"

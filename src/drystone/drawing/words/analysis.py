@@ -47,7 +47,6 @@ ASSUMPTIONS = (
     "2D, rigid blocks, no tension, no crushing, Coulomb friction at the ends of every contact"
 )
 
-
 Shapes = Labels | Mapping[int, NDArray[np.float64]]
 STONES = Names("stone")
 

@@ -62,9 +62,8 @@ def mesh_kind(data: bytes, suffix: str) -> str | None:
     head = data[:_HEAD]
     if head.startswith((b"ply\n", b"ply\r\n")):
         return "ply"
-    if suffix == ".stl" or _is_stl_text(data):
-        return "stl"
-    if len(data) >= 84 and len(data) == 84 + 50 * int.from_bytes(data[80:84], "little"):
+    is_binary = len(data) >= 84 and len(data) == 84 + 50 * int.from_bytes(data[80:84], "little")
+    if suffix == ".stl" or is_binary or _is_stl_text(data):
         return "stl"
     lines = [line.split() for line in data[:65536].split(b"\n")]
     is_obj = any(line[0] == b"v" and len(line) >= 4 for line in lines if line)
@@ -162,7 +161,7 @@ def _ply(data: bytes) -> Mesh:
     said = re.search(rb"^format\s+(\w+)", head, re.MULTILINE)
     order, codes = ">" if said and said[1] == b"binary_big_endian" else "<", _PLY_TYPES
     found, faces, at = {b"vertex": np.empty(0, [(axis, "d") for axis in "xyz"])}, [], 0
-    with foreign(lambda why: damaged(why, "mesh")):
+    with foreign(_cut):
         body = body.partition(b"\n")[2]
         if said and said[1] == b"ascii":
             body, codes = np.fromstring(body, "<d", sep=" ").tobytes(), dict.fromkeys(codes, "d")

@@ -230,12 +230,9 @@ class _Shares:
 
     def frames(self, least: float) -> dict[int, list[int]]:
         """Return for each mask of so many px that is drawn around the others which those are."""
-        inside: dict[int, set[int]] = {
-            i: set(self._inside(i, self._holes.get(i)))
-            if i not in self._keep and self.areas[i] >= least
-            else set()
-            for i in self._masks
-        }
+        large = (i for i in self._masks.keys() - self._keep if self.areas[i] >= least)
+        inside = {i: set[int]() for i in self._masks}
+        inside |= {i: set(self._inside(i, self._holes.get(i))) for i in large}
         plain = {i for i, mask in self._masks.items() if mask.mask.all()}
         return frames({i: self.areas[i] for i in self._masks}, inside, plain)
 
