@@ -279,6 +279,18 @@ def test_a_photograph_that_was_cut_out_is_read_by_its_alpha(tmp_path, kind):
             read_stones(with_alpha(tmp_path, kind, NOISE, alpha))
 
 
+def test_a_photograph_that_was_turned_is_no_stone(tmp_path):
+    """Large stones have no four straight sides."""
+    y, x = np.mgrid[-200:200, -300:300]
+    noise = np.random.default_rng(1).integers(0, 256, (400, 600), np.uint8)
+    across, up = abs(x + y / 8) / 250, abs(y - x / 8) / 150
+    turned = with_alpha(tmp_path, "RGB", noise, (np.maximum(across, up) < 1) * np.uint8(255))
+    with pytest.raises(InputError, match="E102"):
+        read_stones(turned)
+    stone = with_alpha(tmp_path, "RGB", noise, (across**4 + up**4 < 1) * np.uint8(255))
+    assert codes(read_stones(stone))[0] == "W135"
+
+
 def test_a_stone_of_0_on_a_transparent_ground_is_refused(tmp_path):
     values = np.select([GREY == 8, GREY == 255], [0, 5], 9).astype(np.uint8)
     with pytest.raises(InputError, match=r"E108 a.any: 375 px are 0 .*add 1"):

@@ -53,7 +53,7 @@ def test_what_nobody_sees_is_left_aside():
     sheet = """<style>/* rect{display:none} */ @font-face { font-family: f; src: url(f) }
         .d {fill-opacity:0} .e {fill:none; stroke:#0000; stroke-width:9}
         .b, #c { display: none } rect.sheet {visibility:hidden !important} text{fill:none}
-        g > rect:hover { cursor: pointer }</style>"""
+        g > rect:hover { cursor: pointer } rect:hover { display: none }</style>"""
     for hidden in (
         ' display="none"', ' visibility="hidden"', ' opacity="0"', ' style="opacity:0%"',
         ' style="display : none"', ' style="visibility:collapse;fill:red"',
@@ -67,7 +67,8 @@ def test_what_nobody_sees_is_left_aside():
     ):  # fmt: skip
         boxes, said = bounds(sheet + STONE.format(hidden) + RECT)
         assert boxes == [SEEN]
-        assert "1 elements that are hidden" in said
+        assert re.search("1 elements (that are hidden|without a fill or a line that is seen)", said)
+    assert "without a fill" in bounds(STONE.format(' fill="none"') + RECT)[1]
 
 
 def test_the_rule_that_says_most_counts():
@@ -112,6 +113,7 @@ def test_pages_ways_of_a_switch_and_other_layers_and_sheets_are_left_aside_and_n
         (f'<rect width="100%" height="100%"/>{RECT}', "1 rectangles over the whole page"),
         (f"<switch><title/>{''.join(ways)}{RECT}{other.format('')}</switch>",
          "3 elements that are hidden"),
+        (f'<switch>{ways[1]}<g systemLanguage="de">{RECT}</g></switch>', "1 elements that are hid"),
         (sheet + RECT + STONE.format(' class="a"'), "a style sheet in another file was not read"),
         (f'<rect width="9" height="9"/><g id="STONES">{RECT}</g>',
          "1 shapes outside the group STONES"),

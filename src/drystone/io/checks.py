@@ -4,6 +4,7 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 from scipy import ndimage
 
@@ -12,6 +13,7 @@ from drystone.io.files import listed
 from drystone.io.labels import Census, IdImage, components
 from drystone.kernels.ids import counted
 from drystone.kernels.label_runs import label_runs, runs_in_pieces
+from drystone.kernels.silhouette import pixel_hull
 
 RARE_PX = 10
 _MANY_VALUES = 64
@@ -19,6 +21,10 @@ _PLAIN_SHARE = 0.5
 _PLAIN_SHARE_LOSSY = 0.3
 _CLEAR_SHARE = 0.01
 """Of a photograph that stones were cut out of, what is transparent at least."""
+_TURNED_PX, _STRAIGHT_PX = 1000, 3.0
+"""A photograph that was turned has four straight sides, together so long at least; so has a small
+stone.
+"""
 _BLENDED_SHARE = 0.5
 """Measured on published labels scaled or blurred: .57 (bicubic, which overshoots) ... 1."""
 _FEW_VALUES = 8
@@ -134,13 +140,17 @@ def cut_out(image: IdImage) -> IdImage:
         return image
     top = int(alpha.max())
     clear, full = np.count_nonzero(alpha <= top // 8), np.count_nonzero(alpha >= top - top // 8)
-    # Neither a window with round corners nor one that fades away.
-    if clear < _CLEAR_SHARE * alpha.size or alpha.size - clear > 2 * full:
+    mask = alpha > top // 2
+    hull = shapely.Polygon(pixel_hull(mask))
+    corners = shapely.get_num_points(shapely.simplify(hull.exterior, _STRAIGHT_PX))
+    solid = np.count_nonzero(mask) >= hull.area - hull.length
+    turned = solid and corners <= 6 and hull.length >= _TURNED_PX
+    # Nor a window with round corners, nor one that fades away.
+    if turned or clear < _CLEAR_SHARE * alpha.size or alpha.size - clear > 2 * full:
         return image
     what = "what can be seen has the colours of a photograph: alpha was read in place of them."
-    cure = "Give a label image where stones touch, one id a stone."
-    mask = (alpha > top // 2).view(np.uint8)
-    return IdImage(mask, 0, notices=(*image.said, Notice("W135", what, cure)))
+    cure = "Give a label image where stones touch, and a photograph with ground to `segment`."
+    return IdImage(mask.view(np.uint8), 0, notices=(*image.said, Notice("W135", what, cure)))
 
 
 def _photo(census: Census) -> LabelImageError:

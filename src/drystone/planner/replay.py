@@ -90,12 +90,13 @@ def differences(
     own, asked = wall.site.extent_px, site.extent_px
     sized = "another wall ({:g}x{:g} px, not {:g}x{:g})".format(*own, *asked)
     geometry = "raster" if wall.outlines is None else "exact"
+    of_it = f"--geometry {geometry}" + " --budget 1" * (geometry == "raster")
     one_sided = all(placement.side == "left" for placement in wall.placements)
     checks = [  # whether it is the same, what it is else, and the option that makes it the same
         (same, "other stones", ""),
         (np.allclose(own, asked, rtol=0, atol=1e-6), sized, ""),
         (wall.site.scale == site.scale, "another resolution", f"--scale {wall.site.scale:g}"),
-        (geometry == settings.geometry, "another geometry", f"--geometry {geometry}"),
+        (geometry == settings.geometry, "another geometry", of_it),
         (settings.two_sided or one_sided, "both sides", "--two-sided"),
     ]
     return {name: option for alike, name, option in checks if not alike}

@@ -1,5 +1,7 @@
 """What is said of a wall first, and of how wide the gaps are that are closed."""
 
+import math
+
 import numpy as np
 import pytest
 
@@ -67,9 +69,13 @@ def test_a_load_that_is_not_sideways_counts_as_it_is_given(force, words):
     wall = ModelledWall(model, np.ones((1, 1)), Names("stone"))
     loads = Loads(weight(model), point_load(model, 1, (1.0, 2.0), force))
     both = lateral_resistance(model, loads, mechanism=True)
-    without = {"left": both.left.alpha, "right": both.right.alpha}
+    without = {"left": both.left.alpha, "right": both.right.alpha or math.inf}
     said = judge_wall("1 stone", wall, both, load_case="live", without_dilatancy=without)
     assert said == (True, f"1 stone, stands; carries {words}")
+    if force == (0, -1):
+        without["right"] = None  # the search has failed
+        _, said = judge_wall("1 stone", wall, both, load_case="live", without_dilatancy=without)
+        assert "stands; no limit was found for the live load (live); reversed, 1.000" in said
 
 
 def test_what_no_solver_could_answer_is_not_judged():

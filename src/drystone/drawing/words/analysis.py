@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from importlib.metadata import version
-from math import atan, degrees, isfinite
+from math import atan, degrees, inf, isfinite
 from types import MappingProxyType
 from typing import Any, Literal
 
@@ -239,7 +239,10 @@ class Card(RangeCard):
         count = sum(block.id not in names.wedges for block in wall.model.blocks)
         return judge_wall(
             counted(count, names.noun), wall, self.resistance, load_case=self.load_case,
-            without_dilatancy={side: end.alpha for side, end in self.without.items()},
+            without_dilatancy={
+                side: inf if end.status is LimitStatus.UNBOUNDED else end.alpha
+                for side, end in self.without.items()
+            },
             loose=self.loose, can_fall=self._can_fall,
         )  # fmt: skip
 
@@ -458,9 +461,9 @@ def judge_wall(
     """Say whether a wall stands, and in words what brings it down; not known is None.
 
     `subject` says how large it is, such as "28 of 30 stones".
-    `without_dilatancy` are load multipliers by Coulomb's law, by direction, where they are known:
-    the least of all is what the wall is told to carry, under loads that are not sideways the least
-    as they are given: reversed they are other loads.  `loose` and `can_fall` are those of
+    `without_dilatancy` are load multipliers by Coulomb's law, by direction, None where they are not
+    known: the least of all is what the wall is told to carry, under loads that are not sideways the
+    least as they are given: reversed they are other loads.  `loose` and `can_fall` are those of
     :class:`Card`: what moves then, and whether the wall falls when it is let go.
     """
     if resistance.failed:
@@ -475,15 +478,19 @@ def judge_wall(
         return False, f"{subject}, {FALLS}: let go, it can fall{how}"
     both = [(end.alpha, str(end.direction)) for end in (resistance.left, resistance.right)]
     both += [(alpha, direction) for direction, alpha in without_dilatancy.items()]
-    known = [(alpha, direction) for alpha, direction in both if alpha is not None]
+    known = [(alpha, side) for alpha, side in both if alpha is not None and isfinite(alpha)]
+    open_sides = [side for side, alpha in without_dilatancy.items() if alpha is None]
     reverse = ""
     if not is_horizontal(load_case):
         other = [alpha for alpha, direction in known if direction == "left"]
         known = [one for one in known if one[1] == "right"]
+        open_sides = [side for side in open_sides if side == "right"]
         reverse = f"; reversed, {min(other):.3f} times" if other else ""
     if not known:
         any_load = f"carries any multiple of the live load ({load_case}){reverse}"
         words = any_load if reverse else "no load of this kind brings it down"
+        if open_sides:
+            words = f"no limit was found for the live load ({load_case}){reverse}"
         return True, f"{subject}, stands; {words}"
     alpha, direction = min(known)
     words = f"{subject}, stands; {_load(alpha, load_case)}{reverse}"

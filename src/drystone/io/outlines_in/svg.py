@@ -458,6 +458,8 @@ def _rules(text: str, condition: str) -> Iterator[tuple[str, Mapping[str, str]]]
         if not said or selectors == ["@font-face"]:
             continue
         for selector in selectors:
+            if _POINTED.search(selector):
+                continue
             if condition or not selector or not _SIMPLE.fullmatch(selector):
                 what = (condition or selector)[:30]
                 telling = [k for k, v in said.items() if k not in _ASIDE or _is_0(v)]
@@ -479,12 +481,13 @@ _HIDDEN = frozenset(
      "style", "script", "linearGradient", "radialGradient", "filter", "namedview"}
 )  # fmt: skip
 _GROUPS = frozenset({"g", "a", "switch"})
-_CONDITIONS = {"requiredExtensions", "systemLanguage"}
+_CONDITIONS = {"requiredExtensions", "systemLanguage"}, {"requiredExtensions"}
 _LABEL = "{http://www.inkscape.org/namespaces/inkscape}label"
 _XLINK = "{http://www.w3.org/1999/xlink}href"
 _SHEETS = (b"<?xml-stylesheet", b"@import")
 _LAYER = "stones"
 _UNSEEN = "elements that are hidden"
+_BARE = "elements without a fill or a line that is seen"
 _MOST_TEXT = 2_000_000
 """Of attributes of what is drawn, beside two times what the file has: a use draws things again."""
 _MOST_CLIPPED = 300_000
@@ -501,6 +504,8 @@ _ALL = 1.0 - 1e-9
 """Share of a shape that is all of it."""
 _VISIBLE = {"visible": True, "hidden": False, "collapse": False}
 
+_POINTED = re.compile(r":(hover|focus|active)")
+"""What no drawing that lies still is."""
 _CLEAR = re.compile(
     r"none|transparent|#[\da-f]{3}0|#[\da-f]{6}00"
     r"|[a-z]++\((?:(?:[^,]*+,){3}|[^/]*+/)\s*+[.0]++%?\s*+\)",
@@ -632,12 +637,13 @@ class _Walk:
                 self.aside[kind] += 1
 
     def _met(self, switch: ET.Element) -> Sequence[ET.Element]:
-        """Return what of a switch is drawn: its first child without a condition, if there is one.
+        """Return what of a switch is drawn: its first child without a condition, or in a language.
 
         Which stones there are does not depend on the language of who reads them.
         """
         ways = [child for child in switch if tag(child) not in _HIDDEN]
-        drawn = [way for way in ways if _CONDITIONS.isdisjoint(way.keys())][:1]
+        few = ([way for way in ways if one.isdisjoint(way.keys())] for one in _CONDITIONS)
+        drawn = next(filter(None, few), [])[:1]
         self.aside[_UNSEEN] += len(ways) - len(drawn)
         return drawn
 
@@ -745,7 +751,7 @@ class _Walk:
     def _shape(self, element: ET.Element, place: _Place) -> Iterator[_Shape]:
         kind, filled = tag(element), place.clipping or self._shows(place.paint, "fill")
         if not place.visible or not (filled or self._shows(place.paint, "stroke")):
-            self.aside[_UNSEEN] += 1
+            self.aside[_BARE if place.visible else _UNSEEN] += 1
             return
         lines = lines_of(kind, element.attrib, self.view)
         # What is filled is closed by that.
