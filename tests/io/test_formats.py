@@ -274,7 +274,7 @@ def test_a_photograph_that_was_cut_out_is_read_by_its_alpha(tmp_path, kind):
                 read(path)
     round_corners, fading = FULL[..., 0].copy(), np.tile(np.linspace(0, 255, 60), (40, 1))
     round_corners[[0, 0, -1, -1], [0, -1, 0, -1]] = 0
-    for alpha in (FULL[..., 0], round_corners, fading.astype(np.uint8)):
+    for alpha in (FULL[..., 0], 0 * FULL[..., 0], round_corners, fading.astype(np.uint8)):
         with pytest.raises(InputError, match="E102"):
             read_stones(with_alpha(tmp_path, kind, NOISE, alpha))
 

@@ -136,7 +136,7 @@ def _is_photo(census: Census) -> bool:
 def cut_out(image: IdImage) -> IdImage:
     """Return the mask by which a photograph was cut out, which is its alpha, and say so (W135)."""
     alpha = image.alpha
-    if alpha is None or not _is_photo(image.census):
+    if alpha is None or not alpha.any() or not _is_photo(image.census):
         return image
     top = int(alpha.max())
     clear, full = np.count_nonzero(alpha <= top // 8), np.count_nonzero(alpha >= top - top // 8)

@@ -217,7 +217,7 @@ def load_case(case: LoadCase, model: RigidBlockModel) -> tuple[RigidBlockModel, 
         if not case.live:
             cure = "Add --live ID@X,Y:FX,FY once or more."
             raise UsageError("E138", "--load points needs forces.", cure=cure)
-        forces = np.array([point_load(model, *_parsed(text, "--live")) for text in case.live])
+        forces = np.array([point_load(model, *force_at(text, "--live")) for text in case.live])
         live = np.sum(forces, axis=0)
         arm = sqrt(np.mean([block.area for block in model.blocks]))
         total, largest = (np.abs(one / (1.0, 1.0, arm)).max() for one in (live, forces))
@@ -232,13 +232,14 @@ def load_case(case: LoadCase, model: RigidBlockModel) -> tuple[RigidBlockModel, 
         name = f"{loads.name}, tilted by {case.tilt:g}°"
         loads = replace(loads, dead=loads.dead + turned, name=name, tilt_deg=case.tilt)
     for text in case.dead:
-        loads = replace(loads, dead=loads.dead + point_load(model, *_parsed(text, "--dead")))
+        loads = replace(loads, dead=loads.dead + point_load(model, *force_at(text, "--dead")))
     if case.dead:
         loads = replace(loads, name=f"{loads.name}, dead forces ({' '.join(case.dead)})")
     return model, loads
 
 
-def _parsed(text: str, option: str) -> tuple[int, tuple[float, float], tuple[float, float]]:
+def force_at(text: str, option: str) -> tuple[int, tuple[float, float], tuple[float, float]]:
+    """Read ID@X,Y:FX,FY: a block, the point where a force acts on it, and the force (E138)."""
     found = _POINT_LOAD.fullmatch(text)
     if found is None:
         cure = "Write ID@X,Y:FX,FY, as in 7@120,85:0,-200."

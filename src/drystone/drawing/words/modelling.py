@@ -31,7 +31,7 @@ from drystone.model.wall import Labels
 from drystone.statics.failing.mechanism import Names, Noun
 from drystone.statics.joints import with_head_friction
 from drystone.statics.limit import lateral_resistance
-from drystone.statics.loads import LoadCase, load_case
+from drystone.statics.loads import LoadCase, force_at, load_case
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LateralResistance
 
@@ -340,14 +340,14 @@ def far_forces(
         unit = "lengths of the block model" if given.plan is None else given.plan.length_unit
     far, forces = [], [*case.dead, *case.live]
     shapes = {region.id: region for region in wall_regions(wall.shapes)} if forces else {}
-    for force in forces:
-        block, at = force.partition(":")[0].split("@")
-        bodies = [shapely.Polygon(loop) for loop in shapes[int(block)].loops]
-        point = shapely.Point(*map(float, at.split(",")))
-        if min(map(point.distance, bodies)) > FAR * math.sqrt(max(one.area for one in bodies)):
+    for text in forces:
+        block, at, _ = force_at(text, "a force")
+        bodies = [shapely.Polygon(loop) for loop in shapes[block].loops]
+        size = math.sqrt(max(one.area for one in bodies))
+        if shapely.distance(bodies, shapely.Point(at)).min() > FAR * size:
             left, low, right, high = shapely.total_bounds(bodies)
             box = f"x {left:.4g} to {right:.4g}, y {low:.4g} to {high:.4g}"
-            far.append(f"{block}@{at} ({wall.names.listed([int(block)])}: {box})")
+            far.append(f"{text.partition(':')[0]} ({wall.names.listed([block])}: {box})")
     if not far:
         return None
     what = f"forces act far from their blocks: {listed(far)}."
